@@ -15,7 +15,7 @@ from ifgen.cli import skeletons, terminal
 from ifgen.cli.arguments import EXISTING, OUTPUT_FOLDER
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
 from ifgen.reading.packages import find_packages
-from ifgen.reading.text_files import read_source
+from ifgen.reading.storage import read_source
 from ifgen.writing import transaction
 
 # Late imports: PyYAML and pydantic, which the other commands do without.

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from ifgen.config import rulebook, toml_places
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError, shown_path
-from ifgen.reading.text_files import read_limited
+from ifgen.reading.storage import read_limited
 
 _DEEPEST: Final = 100
 """Parts of a dotted key: tomllib takes a time and a memory that are quadratic in their number."""

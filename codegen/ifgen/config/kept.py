@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ifgen import resources
 from ifgen.config.customization import Distributions, Output
 from ifgen.diagnostics import Diagnostic, Label, UsageError
-from ifgen.reading.text_files import read_json
+from ifgen.reading.storage import read_json
 
 if TYPE_CHECKING:
     from ifgen.reading.search_path import WithDeps

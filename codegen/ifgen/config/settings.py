@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ifgen.config.customization import Customization
 from ifgen.config.silence import Policy
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.reading.text_files import read_limited
+from ifgen.reading.storage import read_limited
 
 if TYPE_CHECKING:
     from ifgen.config.kept import Configuration

@@ -15,7 +15,7 @@ from ifgen.definition import names
 from ifgen.diagnostics import Diagnostic, InputError, Label, Span
 from ifgen.reading import storage
 from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
-from ifgen.reading.text_files import read_source
+from ifgen.reading.storage import read_source
 
 _OF_OTHERS: Final = frozenset(
     (

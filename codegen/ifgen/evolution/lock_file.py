@@ -29,7 +29,7 @@ from ifgen.evolution.lock_checks import AGAIN, check, invalid
 from ifgen.evolution.lock_notation import is_type_name, read_type, read_value
 from ifgen.evolution.lock_text import END, VERSION
 from ifgen.reading.packages import FOLDERS
-from ifgen.reading.text_files import read_source
+from ifgen.reading.storage import read_source
 
 _CONFLICT: Final = ("<<<<<<<", "=======", ">>>>>>>", "|||||||")
 _HASH: Final = re.compile(r"RIHS01_[0-9a-f]{64}")

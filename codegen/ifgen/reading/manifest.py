@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import cast
 
-from ifgen.reading.text_files import MAX_GENERATED, json_of, read_limited
+from ifgen.reading.storage import MAX_GENERATED, json_of, read_limited
 
 NAME = ".ifgen-manifest.json"
 _FORMAT = 1

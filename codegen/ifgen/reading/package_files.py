@@ -9,14 +9,14 @@ from collections.abc import Mapping, Set
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 from ifgen.diagnostics import InputError, Source, Span
 from ifgen.reading import interface_list, storage
 from ifgen.reading.interface_list import FILE, INDEX, PARTS, InterfaceList
 from ifgen.reading.listed_file import EXTENSIONS
 from ifgen.reading.package_xml import PackageXml
-from ifgen.reading.text_files import read_limited, read_source, text_if_there
+from ifgen.reading.storage import read_limited, read_source, text_if_there
 
 FOLDERS: Final = ("action", "msg", "srv")
 """The folders for interfaces. The extension of an interface file is the name of its folder, or idl."""
@@ -116,7 +116,7 @@ class PackageFiles:
 
     @cached_property
     def _on_disk(self) -> Mapping[tuple[str, str], InterfaceFile]:
-        known = {(file.folder, file.name): file for file in files_of(self.root)[0]} if self.partial else {}
+        known = {(file.folder, file.name): file for file in contents(self.root).files} if self.partial else {}
         known.update(((file.folder, file.name), file) for file in self.files)
         return known
 
@@ -147,15 +147,25 @@ def installed_shares() -> list[Path]:
     return [*shares, Path(sysconfig.get_path("purelib"))]
 
 
-def files_of(root: Path) -> tuple[tuple[InterfaceFile, ...], InterfaceList | None]:
-    """The interfaces of a package: those that it lists, else all that lie in its folders."""
-    lies_there = _files_below(root)
-    index = text_if_there(root.parent / INDEX / root.name)
-    path = root / FILE
+class Contents(NamedTuple):
+    """The interfaces and nodes of a package, and its own list of interfaces, where it has one."""
+
+    files: tuple[InterfaceFile, ...] = ()
+    nodes: tuple[NodeFile, ...] = ()
+    listed: InterfaceList | None = None
+
+
+def contents(root: Path) -> Contents:
+    """The contents of a package: the interfaces that it lists, else all that lie in its folders."""
+    names = {folder: storage.names(root / folder) for folder in (*FOLDERS, NODE_FOLDER)}
+    nodes = _nodes(root, names[NODE_FOLDER])
+    lies_there = _interfaces(root, names)
     paths = [file.path for file in lies_there]
+    index = text_if_there(root.parent / INDEX / root.name)
+    cmake = root / FILE
     listed: InterfaceList | None = None
     try:
-        source = read_source(path) if index is None and storage.is_file(path) else None
+        source = read_source(cmake) if index is None and storage.is_file(cmake) else None
     except InputError as error:
         listed = InterfaceList(tuple(paths), error.diagnostics)
     else:
@@ -164,11 +174,10 @@ def files_of(root: Path) -> tuple[tuple[InterfaceFile, ...], InterfaceList | Non
         elif source is not None:
             listed = interface_list.of_source(root, source, paths, installed_shares())
     if listed is None:
-        return lies_there, None
+        return Contents(lies_there, nodes)
     in_folders = {} if listed.is_whole else {file.path: file for file in lies_there}
-    return tuple(
-        in_folders.get(path) or InterfaceFile(path, folder_of(path)) for path in listed.paths
-    ), listed
+    files = (in_folders.get(path) or InterfaceFile(path, folder_of(path)) for path in listed.paths)
+    return Contents(tuple(files), nodes, listed)
 
 
 def installed_files(root: Path) -> tuple[InterfaceFile, ...]:
@@ -186,29 +195,38 @@ def folder_of(path: Path) -> str:
 
 
 def _files_below(root: Path) -> tuple[InterfaceFile, ...]:
-    return tuple(InterfaceFile(path, folder) for folder in FOLDERS for path in interface_paths(root / folder))
+    return _interfaces(root, {folder: storage.names(root / folder) for folder in FOLDERS})
+
+
+def _interfaces(root: Path, names: Mapping[str, Set[str]]) -> tuple[InterfaceFile, ...]:
+    return tuple(
+        InterfaceFile(path, folder)
+        for folder in FOLDERS
+        for path in _interface_paths(root / folder, names[folder])
+    )
 
 
 def nodes_below(root: Path) -> tuple[NodeFile, ...]:
     """The descriptions of nodes of a package."""
-    folder = root / NODE_FOLDER
-    try:
-        names = sorted(entry.name for entry in storage.entries(folder) if not entry.name.startswith("."))
-    except (FileNotFoundError, NotADirectoryError):
-        return ()
-    return tuple(NodeFile(folder / name) for name in names if node_name(name) is not None)
+    return _nodes(root, storage.names(root / NODE_FOLDER))
+
+
+def _nodes(root: Path, names: Set[str]) -> tuple[NodeFile, ...]:
+    nodes = (name for name in sorted(names) if not name.startswith(".") and node_name(name) is not None)
+    return tuple(NodeFile(root / NODE_FOLDER / name) for name in nodes)
 
 
 def interface_paths(folder: Path) -> list[Path]:
     """The interface files in a folder, without what ROS installs beside them: parts, and .idl forms."""
-    try:
-        names = {entry.name for entry in storage.entries(folder) if entry.name.endswith(EXTENSIONS)}
-    except (FileNotFoundError, NotADirectoryError):
-        return []
+    return _interface_paths(folder, storage.names(folder))
+
+
+def _interface_paths(folder: Path, names: Set[str]) -> list[Path]:
     return [
         folder / name
         for name in sorted(names)
-        if not name.startswith(".")
+        if name.endswith(EXTENSIONS)
+        and not name.startswith(".")
         and not _is_part(name, folder, names)
         and not _is_form(name, folder, names)
     ]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
 from ifgen.reading import storage
-from ifgen.reading.text_files import read_limited, unreadable
+from ifgen.reading.storage import read_limited, unreadable
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

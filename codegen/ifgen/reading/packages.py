@@ -17,17 +17,18 @@ from ifgen.reading.package_files import (
     IDL,
     NODE_EXTENSIONS,
     NODE_FOLDER,
+    Contents,
     InterfaceFile,
     NodeFile,
     PackageFiles,
-    files_of,
+    contents,
     folder_of,
     interface_paths,
     is_adapted,
     node_name,
     nodes_below,
 )
-from ifgen.reading.text_files import unreadable
+from ifgen.reading.storage import unreadable
 
 __all__ = [
     "FOLDERS",
@@ -103,11 +104,11 @@ def _package_of_files(
     in_place = place.name in (*FOLDERS, NODE_FOLDER)
     root = _root_around(place)
     if in_place and root != place.parent:
-        known = files_of(root)[0] if root else ()
+        known = contents(root).files if root else ()
         if not any(place in file.path.absolute().parents for file in known):
             root = place.parent  # a package without package.xml, within another one perhaps
     root = root or place
-    known, listed = files_of(root)
+    known, _, listed = contents(root)
     by_path = {os.path.realpath(file.path): file for file in known}
     nodes = tuple(NodeFile(path) for path in paths if node_name(path.name) is not None)
     files = [
@@ -143,9 +144,8 @@ def _packages_below(folder: Path, seen: set[object], problems: list[Diagnostic])
         seen.add(identity)
         if manifest.NAME in names and manifest.is_generated(folder):
             return
-        may_have_files = package_xml.NAME in names or not names.keys().isdisjoint(FOLDERS)
-        nodes = nodes_below(folder) if NODE_FOLDER in names else ()
-        files, listed = files_of(folder) if may_have_files else ((), None)
+        may_be_a_package = not names.keys().isdisjoint((package_xml.NAME, *FOLDERS, NODE_FOLDER))
+        files, nodes, listed = contents(folder) if may_be_a_package else Contents()
     except OSError as error:
         problems.append(unreadable(folder, error))
         return

@@ -6,7 +6,7 @@ import ast
 from pathlib import Path
 
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
-from ifgen.reading.text_files import read_source
+from ifgen.reading.storage import read_source
 
 
 def parse(path: Path) -> tuple[Source, ast.Module]:

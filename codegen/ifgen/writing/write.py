@@ -16,7 +16,7 @@ from pathlib import Path
 from ifgen.diagnostics import Diagnostic, InputError, shown_path
 from ifgen.reading import manifest
 from ifgen.reading.manifest import Manifest
-from ifgen.reading.text_files import MAX_GENERATED, read_limited
+from ifgen.reading.storage import MAX_GENERATED, read_limited
 from ifgen.writing import locking, transaction
 
 ROOT = "."

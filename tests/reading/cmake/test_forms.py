@@ -17,7 +17,7 @@ from pathlib import Path
 
 import pytest
 from ifgen.reading import interface_list
-from ifgen.reading.text_files import read_source
+from ifgen.reading.storage import read_source
 
 HERE = Path(__file__).parent
 SHARE = Path(sys.prefix) / "share"

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from ifgen.reading import interface_list
 from ifgen.reading.cmake.builtin import SETTERS
 from ifgen.reading.cmake.text import SyntaxProblem, commands
-from ifgen.reading.text_files import read_source
+from ifgen.reading.storage import read_source
 
 from .test_forms import forms
 

@@ -18,7 +18,7 @@ from ifgen.cli.arguments import with_deps as with_deps_option
 from ifgen.config.settings import Settings, settle
 from ifgen.diagnostics import InputError, Source, shown_path
 from ifgen.pipeline.values import Condition
-from ifgen.reading.text_files import read_source
+from ifgen.reading.storage import read_source
 from ifgen.writing.interruption import terminable
 
 if TYPE_CHECKING:

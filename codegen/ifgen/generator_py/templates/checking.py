@@ -18,7 +18,7 @@ from ifgen.generator_py.templates.check.check import Checker
 from ifgen.generator_py.templates.check.syntax import Template, parse, refusal
 from ifgen.generator_py.templates.check.types import spelled
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
-from ifgen.reading.text_files import MAX_GENERATED, read_limited
+from ifgen.reading.storage import MAX_GENERATED, read_limited
 
 _OURS = "ifgen/"
 _SUFFIX = ".j2"

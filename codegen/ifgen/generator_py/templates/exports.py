@@ -17,7 +17,7 @@ from ifgen import resources
 from ifgen.diagnostics import Diagnostic, InputError, UsageError
 from ifgen.generator_py.templates import merge
 from ifgen.generator_py.templates.merge import Merged
-from ifgen.reading.text_files import read_limited
+from ifgen.reading.storage import read_limited
 from ifgen.writing import transaction
 
 RECORD = ".ifgen-exported"

@@ -15,7 +15,7 @@ import jinja2
 
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.templates.places import at_line
-from ifgen.reading.text_files import read_limited
+from ifgen.reading.storage import read_limited
 
 _MODULE = "ifgen_filters"
 

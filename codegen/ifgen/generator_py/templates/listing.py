@@ -14,7 +14,7 @@ from ifgen import resources
 from ifgen.config.customization import Customization
 from ifgen.generator_py.templates.checking import given, names
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
-from ifgen.reading.text_files import read_limited
+from ifgen.reading.storage import read_limited
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ifgen.diagnostics import Label, Source, Span
-from ifgen.reading.text_files import read_limited
+from ifgen.reading.storage import read_limited
 
 
 def at_line(path: Path, line: int, text: str) -> Label:

@@ -20,7 +20,7 @@ from ifgen.reading.cmake.state import State
 from ifgen.reading.cmake.text import Command, SyntaxProblem
 from ifgen.reading.cmake.values import EMPTY, Doubt, Value, elements, joined, worse
 from ifgen.reading.cmake.words import Word, doubt_of, texts
-from ifgen.reading.text_files import read_source
+from ifgen.reading.storage import read_source
 
 GENERATE: Final = "rosidl_generate_interfaces"
 

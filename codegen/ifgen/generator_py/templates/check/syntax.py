@@ -18,7 +18,7 @@ from jinja2.lexer import Lexer, newline_re
 from jinja2.parser import Parser
 
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
-from ifgen.reading.text_files import read_limited
+from ifgen.reading.storage import read_limited
 
 _UNCLOSED = "The innermost block that needs to be closed is"  # so jinja2 ends what it says of these
 _WORD = re.compile(r"\w+")
