@@ -1,4 +1,4 @@
-"""What need not be generated: the state that a run finds, compared with the notes on earlier runs."""
+"""Compares the state that a run finds with the notes on earlier runs: what is as noted need not be made."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from ifgen.definition.interfaces import Registry
 from ifgen.pipeline.freshness import fingerprints
 from ifgen.pipeline.freshness.modules import Modules
-from ifgen.pipeline.freshness.notes import Note, Notes
-from ifgen.pipeline.freshness.state import Found, State
+from ifgen.pipeline.freshness.notes import Notes
+from ifgen.pipeline.freshness.state import State
 from ifgen.pipeline.values import Made
 from ifgen.reading.manifest import Manifest
 from ifgen.writing import write
@@ -28,14 +28,15 @@ class Unchanged:
 
 
 def unchanged_since(notes: Notes, state: State) -> Unchanged:
-    """What generating would not change, of what was noted."""
+    """The part of what was noted that generating would not change."""
     asked = {name for name, package in state.packages.items() if package.source is not None}
     as_noted: dict[str, Manifest] = {}
     needed: set[str] = set()
     pending = list(asked)
     while pending:
         name = pending.pop()
-        record = _as_noted(state.packages[name], notes.packages.get(name))
+        note = notes.packages.get(name)
+        record = note.manifest_of(state.packages[name]) if note else None
         if record is not None:
             as_noted[name] = record
             needs = notes.needed_by(name)
@@ -45,7 +46,8 @@ def unchanged_since(notes: Notes, state: State) -> Unchanged:
             pending += along
     if state.root is not None and as_noted.keys() == asked:
         root = replace(state.root, own=asked, inputs=notes.of_run(asked))
-        record = _as_noted(root, notes.packages.get(write.ROOT))
+        note = notes.packages.get(write.ROOT)
+        record = note.manifest_of(root) if note else None
         as_noted |= {write.ROOT: record} if record is not None else {}
     output = state.output
     found = {name: made for name, made in as_noted.items() if write.is_intact(made, output / name, output)}
@@ -58,12 +60,3 @@ def unchanged_since(notes: Notes, state: State) -> Unchanged:
 
     packages = {name: made for name, made in found.items() if name != write.ROOT}
     return Unchanged(packages, modules, done)
-
-
-def _as_noted(package: Found, note: Note | None) -> Manifest | None:
-    """The manifest of a package, if that and everything that the package is generated from are as noted."""
-    made = package.manifest
-    if note is None or made is None or made.source != package.source:
-        return None
-    found = (package.own, package.inputs, made.digest)
-    return made if found == (set(note.own), note.inputs, note.manifest) else None

@@ -17,7 +17,7 @@ from ifgen.definition.references import references
 from ifgen.diagnostics import Diagnostic, Source
 from ifgen.reading.packages import PackageFiles
 from ifgen.reading.search_path import SearchPath
-from ifgen.reading.text_files import MAX_GENERATED, read_limited
+from ifgen.reading.storage import MAX_GENERATED, read_limited
 
 
 def of_text(data: bytes) -> bytes:

@@ -10,7 +10,7 @@ from ifgen.definition.interfaces import Interface
 from ifgen.pipeline.freshness.notes import Notes
 from ifgen.pipeline.freshness.state import State
 from ifgen.reading import manifest
-from ifgen.reading.text_files import MAX_GENERATED, read_limited
+from ifgen.reading.storage import MAX_GENERATED, read_limited
 
 
 @dataclass(frozen=True, slots=True)

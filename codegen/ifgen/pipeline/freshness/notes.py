@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -17,7 +17,8 @@ from typing import Any, Final, TypeAlias
 from ifgen import resources
 from ifgen.diagnostics import Diagnostic
 from ifgen.pipeline.freshness import remembered
-from ifgen.reading.text_files import read_json
+from ifgen.reading.manifest import Manifest
+from ifgen.reading.storage import read_json
 from ifgen.writing import cache
 
 _MOST_RUNS: Final = 30
@@ -27,8 +28,23 @@ Run: TypeAlias = list[Any]
 
 
 @dataclass(frozen=True, slots=True)
+class Found:
+    """One package as a run finds it, and what the output has of it.
+
+    `own` are its interfaces and nodes by name; None if the package is gone, or has a name twice. `inputs` is
+    the digest of everything that it is generated from; None if other names were noted. `source` is its
+    folder, seen from the output, if it was asked for. `manifest` is the one in the output.
+    """
+
+    own: Set[str] | None
+    inputs: str | None
+    source: str | None
+    manifest: Manifest | None
+
+
+@dataclass(frozen=True, slots=True)
 class Note:
-    """The sources of a package.
+    """The sources of a package, as they were.
 
     `own` are its interfaces and nodes and `needed` the interfaces that those need, as `pkg/msg/Name`;
     `documents` are the paths of other files that were read. `inputs` is the digest of all that. `modules` are
@@ -42,6 +58,14 @@ class Note:
     modules: Mapping[str, str] = field(default_factory=dict[str, str])
     inputs: str = ""
     manifest: str = ""
+
+    def manifest_of(self, package: Found) -> Manifest | None:
+        """The manifest of a package, if that and everything that it is generated from are as noted."""
+        made = package.manifest
+        if made is None or made.source != package.source:
+            return None
+        found = (package.own, package.inputs, made.digest)
+        return made if found == (set(self.own), self.inputs, self.manifest) else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
 from ifgen.pipeline.freshness.fingerprints import of_source, of_text, sources_of
-from ifgen.reading.text_files import read_limited
+from ifgen.reading.storage import read_limited
 
 Document: TypeAlias = dict[str, Any]
 

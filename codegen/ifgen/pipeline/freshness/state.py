@@ -11,26 +11,10 @@ from ifgen import resources
 from ifgen.pipeline import earlier
 from ifgen.pipeline.freshness import fingerprints
 from ifgen.pipeline.freshness.digests import Digests
-from ifgen.pipeline.freshness.notes import Notes
+from ifgen.pipeline.freshness.notes import Found, Notes
 from ifgen.pipeline.values import Inputs
-from ifgen.reading.manifest import Manifest
 from ifgen.reading.packages import NODE_FOLDER, PackageFiles
 from ifgen.writing.write import ROOT
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """One package as a run finds it, and what the output has of it.
-
-    `own` are its interfaces and nodes by name; None if the package is gone, or has a name twice. `inputs` is
-    the digest of everything that it is generated from; None if other names were noted. `source` is its
-    folder, seen from the output, if it was asked for. `manifest` is the one in the output.
-    """
-
-    own: Set[str] | None
-    inputs: str | None
-    source: str | None
-    manifest: Manifest | None
 
 
 @dataclass(frozen=True, slots=True)
