@@ -173,7 +173,7 @@ def operation_table(our_class: Callable[[str], Any], words: list[str], rounds: i
 
 
 def in_python(cls: Any) -> None:
-    """Let a class and those inside it compare and copy as without ifgen-native: by generated methods."""
+    """Let a class and those inside it compare and copy as without ifgen-ros-native: by generated methods."""
     for name in ("eq", "deepcopy", "copy"):
         setattr(cls, f"__{name}__", getattr(cls, f"__generated_{name}__"))
     for nested in cls.__nested__:

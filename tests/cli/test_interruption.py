@@ -90,7 +90,7 @@ def test_who_is_impatient_is_heard(ifgen: Run, demo_msgs: Path, monkeypatch: pyt
 
 
 def test_other_commands(ifgen: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Path, "iterdir", first(Path.iterdir, lambda: signal.raise_signal(signal.SIGINT)))
+    monkeypatch.setattr(os, "scandir", first(os.scandir, lambda: signal.raise_signal(signal.SIGINT)))
     assert ifgen("hash") == Outcome(130, "", "interrupted\n")
 
 

@@ -370,7 +370,7 @@ assert "numpy" not in sys.modules
         ("characters", np.array([1, 2], np.uint8), [1, 2]),
         ("texts", np.array([["a", "bc"]]), ["a", "bc"]),
     ],
-    ids=str,
+    ids=lambda value: type(value).__name__ if isinstance(value, memoryview) else str(value),
 )
 def test_arrays_in_fields_of_lists(classes: Classes, field: str, value: Any, elements: list[Any]) -> None:
     """Such a field keeps what it is given, as rosidl's; what is sent, and `to_dict`, have the elements."""

@@ -37,7 +37,7 @@ def test_list_names_what_there_is(ifgen: Run, project: Path) -> None:
         "message_package/message.j2\n"
         "  given   module: InterfaceModule, message: MessageClass\n"
         "  part of message_package/interface.py.j2\n"
-        "  blocks  metaclass, bases, docstring, attributes, additions\n"
+        "  blocks  metaclass, bases, docstring, attributes, views, additions\n"
         "  yours   templates/message_package/message.j2\n"
         "\n"
         "doc.md.j2\n"
