@@ -35,7 +35,7 @@ def sequences(message: Any) -> Iterator[tuple[Field, Any]]:
                 yield from sequences(each)
 
 
-@settings(max_examples=600)
+@settings(max_examples=300)
 @given(data=st.data())
 def test_a_message_with_views_is_a_message(classes: Classes, data: st.DataObject) -> None:
     message = data.draw(messages(classes[data.draw(st.sampled_from(sorted(classes)))]))

@@ -64,7 +64,7 @@ def judge(payload: bytes, cls: type[Any]) -> bool:
     return accepted
 
 
-@settings(max_examples=1500)
+@settings(max_examples=700)
 @given(data=st.data())
 def test_on_messages_and_what_becomes_of_them_on_the_way(classes: Classes, data: st.DataObject) -> None:
     cls = classes[data.draw(st.sampled_from(sorted(classes)))]
