@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import mmap
+import os
 import subprocess
 import sys
 from array import array
@@ -356,8 +357,8 @@ for value in ([1], (1,), b"a", bytearray(b"a"), memoryview(b"a"), __import__("ar
     Image(data=value)
 assert "numpy" not in sys.modules
 """
-    path = f"{ROOT / 'generated'}:{ROOT / 'codegen'}"
-    subprocess.run([sys.executable, "-c", program], env={"PYTHONPATH": path}, check=True, timeout=60)
+    environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'generated'}:{ROOT / 'codegen'}"}
+    subprocess.run([sys.executable, "-c", program], env=environment, check=True, timeout=60)
 
 
 @pytest.mark.parametrize(
