@@ -139,3 +139,11 @@ def test_every_late_import_has_its_reason() -> None:
     paths = modules("codegen", "examples")
     found = [f"{path.relative_to(ROOT)}:{line}" for path in paths for line in unexplained(path.read_text())]
     assert found == []
+
+
+def test_c_uses_no_formats_with_a_number_sign() -> None:
+    """Compiled with the headers of CPython 3.13, they fail on 3.11 and 3.12, whatever the limited API is."""
+    formats = re.compile(r'Py(?:Arg_Parse|_BuildValue|Object_Call)\w*\([^"]*"[^"]*[suyz]#')
+    sources = sorted((ROOT / "codegen/native/src").glob("*.c"))
+    assert sources
+    assert not [path.name for path in sources if formats.search(path.read_text())]

@@ -117,12 +117,12 @@ static PyObject *native_open(PyObject *module, PyObject *arguments) {
 
 static PyObject *native_attach(PyObject *module, PyObject *arguments) {
   (void)module;
-  PyObject *cls, *encode, *decode, *classes;
-  const char *text;
+  PyObject *cls, *encode, *decode, *rows, *classes;
   Py_ssize_t size;
-  if (!PyArg_ParseTuple(arguments, "O!OOs#O!:codec_attach", &PyType_Type, &cls, &encode, &decode, &text, &size, &PyTuple_Type, &classes))
+  if (!PyArg_ParseTuple(arguments, "O!OOUO!:codec_attach", &PyType_Type, &cls, &encode, &decode, &rows, &PyTuple_Type, &classes))
     return NULL;
-  if (!codec_attach((PyTypeObject *)cls, encode, decode, text, size, classes)) return NULL;
+  const char *text = PyUnicode_AsUTF8AndSize(rows, &size);
+  if (!text || !codec_attach((PyTypeObject *)cls, encode, decode, text, size, classes)) return NULL;
   PyObject *method = PyDescr_NewMethod((PyTypeObject *)cls, &serialize_method);
   PyObject *function = method ? PyCFunction_NewEx(&deserialize_function, cls, NULL) : NULL;
   if (!function) return Py_XDECREF(method), NULL;

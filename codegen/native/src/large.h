@@ -7,7 +7,6 @@
 #define IFGEN_NATIVE_LARGE_H
 
 #define Py_LIMITED_API 0x030B0000
-#define PY_SSIZE_T_CLEAN
 #include <Python.h>
 
 #include "blocks.h"

@@ -25,10 +25,11 @@ bool layout_from_python(layout *made, PyObject *tables) {
   const Py_ssize_t count = PyTuple_Check(tables) ? PyTuple_Size(tables) : 0;
   bool sound = count > 0;
   for (Py_ssize_t i = 0; sound && i < count; i++) {
-    const char *text, *calls;
-    Py_ssize_t size, calls_size;
-    sound = PyArg_ParseTuple(PyTuple_GetItem(tables, i), "s#y#", &text, &size, &calls, &calls_size) &&
-            layout_add(made, text, (size_t)size, (const uint32_t *)(const void *)calls, (size_t)calls_size / sizeof(uint32_t));
+    PyObject *rows, *calls;
+    Py_ssize_t size;
+    const char *text = PyArg_ParseTuple(PyTuple_GetItem(tables, i), "US", &rows, &calls) ? PyUnicode_AsUTF8AndSize(rows, &size) : NULL;
+    sound = text && layout_add(made, text, (size_t)size, (const uint32_t *)(const void *)PyBytes_AsString(calls),
+                               (size_t)PyBytes_Size(calls) / sizeof(uint32_t));
   }
   if (sound) return true;
   layout_free(made);

@@ -12,13 +12,11 @@ static PyObject *native_bind(PyObject *module, PyObject *symbols) {
 
 static PyObject *native_accepts(PyObject *module, PyObject *arguments) {
   (void)module;
-  PyObject *tables;
-  const char *payload;
-  Py_ssize_t size;
-  if (!PyArg_ParseTuple(arguments, "Oy#:accepts", &tables, &payload, &size)) return NULL;
+  PyObject *tables, *payload;
+  if (!PyArg_ParseTuple(arguments, "OS:accepts", &tables, &payload)) return NULL;
   layout layout = {0};
   if (!layout_from_python(&layout, tables)) return NULL;
-  bool accepted = layout_accepts(&layout, (const uint8_t *)payload, (size_t)size, NULL);
+  bool accepted = layout_accepts(&layout, (const uint8_t *)PyBytes_AsString(payload), (size_t)PyBytes_Size(payload), NULL);
   layout_free(&layout);
   return PyBool_FromLong(accepted);
 }

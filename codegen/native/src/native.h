@@ -7,8 +7,8 @@
 #ifndef IFGEN_NATIVE_NATIVE_H
 #define IFGEN_NATIVE_NATIVE_H
 
+/* Formats with # are not used: built with the headers of CPython 3.13, they do not run on older ones. */
 #define Py_LIMITED_API 0x030B0000
-#define PY_SSIZE_T_CLEAN
 #include <Python.h>
 
 #include <stdatomic.h>

@@ -43,13 +43,14 @@ void *event_create(const message_type *event_type, const service_event_info *inf
   if (!event) return NULL;
   PyGILState_STATE state = PyGILState_Ensure();
   PyObject *request_object = part(request), *response_object = part(response), *object = NULL;
-  if (request_object && response_object)
-    object = PyObject_CallFunction(event_type->make_event, "iiIy#LOO", info->event_type, info->stamp_sec, info->stamp_nanosec,
-                                   (const char *)info->client_gid, (Py_ssize_t)sizeof info->client_gid,
+  PyObject *gid = PyBytes_FromStringAndSize((const char *)info->client_gid, sizeof info->client_gid);
+  if (request_object && response_object && gid)
+    object = PyObject_CallFunction(event_type->make_event, "iiIOLOO", info->event_type, info->stamp_sec, info->stamp_nanosec, gid,
                                    (long long)info->sequence_number, request_object, response_object);
   bool made = object && message_from_python(object, event);
   Py_XDECREF(request_object);
   Py_XDECREF(response_object);
+  Py_XDECREF(gid);
   Py_XDECREF(object);
   if (!made) {
     PyErr_WriteUnraisable(event_type->make_event);
