@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import fcntl
+import hashlib
 import os
 import subprocess
 import sys
 import sysconfig
 import tarfile
+import tempfile
 import venv
+from collections.abc import Generator
+from contextlib import contextmanager
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -36,10 +41,21 @@ def run(*command: str | Path, cwd: Path, limit: float = 110) -> str:
     return found.stdout
 
 
+@contextmanager
+def building() -> Generator[None]:
+    """Wait for one's turn: setuptools writes beside the sources, where other workers may be building."""
+    checkout = hashlib.sha256(str(ROOT).encode()).hexdigest()[:16]
+    with (Path(tempfile.gettempdir()) / f"ifgen-building-{checkout}").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 def build(source: Path, output: Path, kind: str) -> Path:
     """A wheel or an sdist, built without a network."""
     before = set(output.iterdir())
-    run(sys.executable, "-m", "build", "--no-isolation", f"--{kind}", "--outdir", output, source, cwd=output)
+    words = ("-m", "build", "--no-isolation", f"--{kind}", "--outdir", output, source)
+    with building():
+        run(sys.executable, *words, cwd=output)
     [built] = set(output.iterdir()) - before
     return built
 

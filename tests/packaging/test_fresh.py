@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from .readme import README, replayed
-from .support import ROOT, run, unpacked
+from .support import ROOT, building, run, unpacked
 
 pytestmark = [
     pytest.mark.slow,
@@ -26,7 +26,8 @@ OURS = ("ifgen-ros", "ifgen-ros-runtime", "ifgen-ros-native")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The distributions that `make dist` builds."""
     folder = tmp_path_factory.mktemp("dist")
-    run(sys.executable, ROOT / ".ci/make_dist.py", folder, "--no-isolation", cwd=folder, limit=300)
+    with building():
+        run(sys.executable, ROOT / ".ci/make_dist.py", folder, "--no-isolation", cwd=folder, limit=300)
     return folder
 
 
