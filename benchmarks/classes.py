@@ -47,7 +47,7 @@ CHILD = "import time; start = time.process_time(); exec({code!r}); print(time.pr
 
 def codec_name() -> str:
     """`C` or `Python`: what our classes use here."""
-    return str(importlib.import_module("ifgen_runtime.native_codec").chosen().name)
+    return str(importlib.import_module("ifgen_runtime.codec.choice").chosen().name)
 
 
 def rosidl_types(name: str) -> Any:

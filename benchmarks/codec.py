@@ -160,11 +160,11 @@ def our_types(codec: str) -> Callable[[str], Any]:
             classes[name] = getattr(importlib.import_module(f"{package}.{folder}"), cls)
         return classes[name]
 
-    native_codec = importlib.import_module("ifgen_runtime.native_codec")
-    os.environ[native_codec.VARIABLE] = codec
-    native_codec.chosen.cache_clear()
-    if codec == "native" and native_codec.chosen().extension is None:
-        raise ImportError(native_codec.chosen().reason)
+    choice = importlib.import_module("ifgen_runtime.codec.choice")
+    os.environ[choice.VARIABLE] = codec
+    choice.chosen.cache_clear()
+    if codec == "native" and choice.chosen().extension is None:
+        raise ImportError(choice.chosen().reason)
     for name, message in messages(load):
         load(name)
         message.__serialize__()  # now the class has its codec
@@ -195,7 +195,7 @@ def cold_codec(message: Any) -> Codec:
     """Our codec without C when no string was seen before."""
     from ifgen_runtime.codec import deserialize_in_python as deserialize
     from ifgen_runtime.codec import serialize_in_python as serialize
-    from ifgen_runtime.strings import forget
+    from ifgen_runtime.codec.texts import forget
 
     data, cls = serialize(message), type(message)
 

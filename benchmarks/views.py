@@ -20,7 +20,7 @@ ifgen.activate("local")
 
 import rclpy  # noqa: E402  # the local one
 from ifgen_runtime import deserialize, serialize  # noqa: E402
-from ifgen_runtime.native_codec import chosen  # noqa: E402
+from ifgen_runtime.codec.choice import chosen  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
 from sensor_msgs.msg import Image, JointState, LaserScan  # noqa: E402
 from std_msgs.msg import String  # noqa: E402

@@ -215,6 +215,6 @@ def _kind(dtype: numpy.dtype[Any]) -> str:
 
 
 def _shown(value: Any) -> str:
-    from ifgen_runtime.encoding import shown  # only for an error
+    from ifgen_runtime.codec.encoding import shown  # only for an error
 
     return shown(value)

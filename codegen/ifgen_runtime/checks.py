@@ -12,8 +12,8 @@ from collections.abc import Callable
 from typing import Any, TypeAlias
 
 from ifgen_runtime.arrays import array_of
+from ifgen_runtime.codec.encoding import type_name
 from ifgen_runtime.copying import deepcopy_of
-from ifgen_runtime.encoding import type_name
 from ifgen_runtime.field_checks import Setter, element_type, setter
 from ifgen_runtime.field_types import Basic, Field, fields_of
 from ifgen_runtime.lazy import numpy

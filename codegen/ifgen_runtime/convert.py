@@ -15,7 +15,7 @@ from contextlib import suppress
 from typing import Any, NoReturn, TypeVar
 
 from ifgen_runtime.arrays import array_of, is_array
-from ifgen_runtime.encoding import (
+from ifgen_runtime.codec.encoding import (
     basic_wire,
     is_collection,
     is_message,

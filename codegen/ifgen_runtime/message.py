@@ -198,7 +198,7 @@ def _first_deepcopy(message: Message, memo: dict[int, Any]) -> Any:
 
 def _settled(message: Message) -> Any:
     """The generated class, which now has the methods that it keeps."""
-    from ifgen_runtime.native_codec import attach_methods  # message packages do without
+    from ifgen_runtime.codec.choice import attach_methods  # message packages do without
 
     cls = generated_class(type(message))
     attach_methods(cls)
@@ -275,14 +275,14 @@ class Message(metaclass=MessageMeta):
 
     def __serialize__(self) -> bytes:
         """The CDR form. This is for the first use of a class, which then gets functions of its own."""
-        from ifgen_runtime.native_codec import attached  # message packages do without
+        from ifgen_runtime.codec.choice import attached  # message packages do without
 
         return attached(generated_class(type(self)))[0](self)
 
     @classmethod
     def __deserialize__(cls, data: bytes) -> Any:
         """The message in these bytes. As `__serialize__`, this is for the first use of a class."""
-        from ifgen_runtime.native_codec import attached  # message packages do without
+        from ifgen_runtime.codec.choice import attached  # message packages do without
 
         return attached(generated_class(cls))[1](data)
 

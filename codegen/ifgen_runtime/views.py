@@ -13,9 +13,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ifgen_runtime.decoding import decode_any
+from ifgen_runtime.codec.choice import attached, chosen, decoder_in_python
+from ifgen_runtime.codec.decoding import decode_any
 from ifgen_runtime.field_types import BASIC_TYPES, Basic, fields_of
-from ifgen_runtime.native_codec import attached, chosen, decoder_in_python
 
 Int8Array: TypeAlias = NDArray[np.int8]
 UInt8Array: TypeAlias = NDArray[np.uint8]

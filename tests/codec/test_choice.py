@@ -13,15 +13,15 @@ from types import ModuleType
 
 import ifgen_native
 import pytest
-from ifgen_runtime import native_codec
+from ifgen_runtime.codec import choice
 
 from .support import ROOT
 
-choose = native_codec.chosen.__wrapped__
+choose = choice.chosen.__wrapped__
 BOTH_CODECS = """
 from geometry_msgs.msg import Point, Polygon, Point32
 from ifgen_runtime import deserialize, serialize
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.codec.choice import chosen
 import copy
 polygon = Polygon(points=[Point32(x=0.5, y=0.25), Point32()])
 data = serialize(polygon)
@@ -62,7 +62,7 @@ def test_pythons_that_cannot_have_it(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_extensions_that_do_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
-        patch.setattr(native_codec, "_ABI", 99)
+        patch.setattr(choice, "_ABI", 99)
         assert re.fullmatch(
             r"ifgen_native has version \d+ of the codec and .* 99: install the same release .*", reason()
         )

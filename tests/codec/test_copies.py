@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy
 import pytest
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.codec.choice import chosen
 
 from .fuzzing.corpus import message as random_message
 from .fuzzing.graphs import graph, identities

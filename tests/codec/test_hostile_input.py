@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import DeserializationError, deserialize, serialize
-from ifgen_runtime.decoding import decode_any
+from ifgen_runtime.codec.decoding import decode_any
 
 from .big_endian import big_endian
 from .strategies import messages

@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("ifgen_native._native", reason="ifgen_native is not built: `make` does it")
 
 from ifgen_runtime import DeserializationError, deserialize, serialize  # as above
-from ifgen_runtime.native_codec import chosen  # as above
+from ifgen_runtime.codec.choice import chosen  # as above
 
 from .support import generate  # as above
 

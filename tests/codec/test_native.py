@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import deserialize, serialize
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.codec.choice import chosen
 
 from .strategies import messages
 from .support import Classes

@@ -9,7 +9,7 @@ import textwrap
 from pathlib import Path
 
 import pytest
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.codec.choice import chosen
 
 ROOT = Path(__file__).resolve().parents[2]
 needs_native = pytest.mark.skipif(chosen().extension is None, reason=f"no codec in C: {chosen().reason}")
@@ -35,7 +35,7 @@ def test_importing_a_message_package_loads_no_extension_and_no_numpy() -> None:
         import sys
         from geometry_msgs.msg import Twist
         from sensor_msgs.msg import Imu
-        print(sorted({"ifgen_native", "ifgen_runtime.native_codec", "numpy"} & sys.modules.keys()))
+        print(sorted({"ifgen_native", "ifgen_runtime.codec.choice", "numpy"} & sys.modules.keys()))
         Twist().__serialize__()
         print("numpy" in sys.modules)
     """)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from ifgen_runtime import deserialize, serialize
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.codec.choice import chosen
 
 from .support import Classes
 

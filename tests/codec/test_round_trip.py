@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import deserialize, serialize
-from ifgen_runtime.decoding import decode_any
-from ifgen_runtime.encoding import encode_any
+from ifgen_runtime.codec.decoding import decode_any
+from ifgen_runtime.codec.encoding import encode_any
 
 from .big_endian import big_endian
 from .strategies import messages

@@ -11,7 +11,7 @@ import ifgen
 import pytest
 from ifgen.generator_py.codec import Extents, plan
 from ifgen.generator_py.codec.table import table_of
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.codec.choice import chosen
 
 from .support import Classes
 

@@ -14,8 +14,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import DeserializationError, deserialize, from_dict, serialize, to_dict
+from ifgen_runtime.codec.choice import chosen
 from ifgen_runtime.field_types import Basic, Field, fields_of
-from ifgen_runtime.native_codec import chosen
 from ifgen_runtime.views import SequenceView
 
 from .big_endian import big_endian

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from ifgen.cli import doctor
-from ifgen_runtime import native_codec
+from ifgen_runtime.codec import choice
 from ifgen_runtime.installation import add_extra, add_native
 
 from .support import DISTRIBUTION, needs_rclpy, run_python
@@ -107,8 +107,8 @@ def test_no_codec_in_c(
     number: str | None, system: str, is_advised: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """An extension that is there and does not fit is not mended by installing it."""
-    choice = native_codec.CodecChoice(None, "ifgen_native is not installed")
-    monkeypatch.setattr(native_codec, "chosen", lambda: choice)
+    python = choice.CodecChoice(None, "ifgen_native is not installed")
+    monkeypatch.setattr(choice, "chosen", lambda: python)
     monkeypatch.setattr(doctor, "_version", lambda name: number)
     monkeypatch.setattr(doctor.platform, "system", lambda: system)
     found = doctor._codec()

@@ -18,7 +18,7 @@ native = pytest.importorskip("ifgen_native._native", reason="ifgen_native is not
 from hypothesis import given, settings  # noqa: E402  # not needed where the extension is not
 from hypothesis import strategies as st  # noqa: E402
 from ifgen_runtime import DeserializationError, serialize  # noqa: E402
-from ifgen_runtime.decoding import decode_any  # noqa: E402
+from ifgen_runtime.codec.decoding import decode_any  # noqa: E402
 from ifgen_runtime.type_description import describe  # noqa: E402
 from ifgen_runtime.type_support.descriptions import Description  # noqa: E402
 from ifgen_runtime.type_support.layout import Layout, described_layout, layout_of  # noqa: E402

@@ -80,7 +80,7 @@ def _runtime() -> Finding:
 def _codec() -> Finding:
     """Which codec serialises messages here, and why."""
     # Found by name: the toolkit imports nothing of the runtime.
-    choice = import_module("ifgen_runtime.native_codec").chosen()
+    choice = import_module("ifgen_runtime.codec.choice").chosen()
     native = str(import_module("ifgen_runtime.installation").NATIVE)
     number = _version(native)
     if choice.extension:

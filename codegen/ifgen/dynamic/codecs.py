@@ -90,4 +90,4 @@ def _attach(
             if _is_later(cls, name):
                 delattr(cls, name)
         exec(code, module)
-        import_module("ifgen_runtime.native_codec").attached(cls)
+        import_module("ifgen_runtime.codec.choice").attached(cls)

@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from functools import lru_cache
 
-from ifgen_runtime.encoding import shown
+from ifgen_runtime.codec.encoding import shown
 from ifgen_runtime.errors import ConversionError
 
 MAXIMUM_CHANNELS = 512  # CV_CN_MAX of OpenCV, from which names such as 8UC1 come

@@ -11,7 +11,7 @@ from typing import Any, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ifgen_runtime.encoding import kind_of, shown
+from ifgen_runtime.codec.encoding import kind_of, shown
 from ifgen_runtime.errors import ConversionError
 
 Item = TypeVar("Item", bound=np.generic)

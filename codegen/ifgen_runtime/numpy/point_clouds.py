@@ -8,7 +8,7 @@ import numpy as np
 from numpy.lib.stride_tricks import as_strided
 from numpy.typing import ArrayLike, NDArray
 
-from ifgen_runtime.encoding import shown
+from ifgen_runtime.codec.encoding import shown
 from ifgen_runtime.errors import ConversionError
 from ifgen_runtime.numpy.fields import (
     checked_size,

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ifgen_runtime.encoding import shown
+from ifgen_runtime.codec.encoding import shown
 from ifgen_runtime.errors import ConversionError
 from ifgen_runtime.field_types import fields_of
 from ifgen_runtime.numpy.fields import name_of, new_message, require, size_in

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ifgen_runtime.encoding import kind_of
+from ifgen_runtime.codec.encoding import kind_of
 from ifgen_runtime.errors import ConversionError
 from ifgen_runtime.numpy.fields import described, name_of, number_in, require
 from ifgen_runtime.numpy.messages import HoldsPose, HoldsTransform, PoseMessage, TransformMessage

@@ -12,9 +12,9 @@ from collections.abc import Callable
 from typing import Any
 
 from ifgen_runtime.codec import serialize
-from ifgen_runtime.decoding import decode_any
+from ifgen_runtime.codec.choice import attached
+from ifgen_runtime.codec.decoding import decode_any
 from ifgen_runtime.errors import DeserializationError, SerializationError, as_raised
-from ifgen_runtime.native_codec import attached
 from ifgen_runtime.type_description import describe, sources, type_name
 from ifgen_runtime.type_support import tables
 from ifgen_runtime.type_support.binding import native

@@ -1,7 +1,7 @@
 /* The codec as Python sees it: functions of the extension module, and those of each class. */
 #include "codec_wire.h"
 
-enum { CODEC_ABI = 1 }; /* of the functions here and of the text of tables; ifgen_runtime/native_codec.py has the same */
+enum { CODEC_ABI = 1 }; /* of the functions here and of the text of tables; ifgen_runtime/codec/choice.py has the same */
 enum { LOCAL_SIZE = 1024 };
 
 /* From ifgen_runtime: the functions for what has no codec in C, and for objects of classes derived from one that has. */

@@ -7,10 +7,10 @@ from functools import cached_property, partial
 from typing import Any
 
 from ifgen_runtime.codec import deserialize, serialize
+from ifgen_runtime.codec.choice import attached
 from ifgen_runtime.errors import DeserializationError as DecodeError
 from ifgen_runtime.errors import SerializationError, as_raised
 from ifgen_runtime.message import generated_class
-from ifgen_runtime.native_codec import attached
 
 from rmw_local.drops import Drops
 

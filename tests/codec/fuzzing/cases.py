@@ -8,8 +8,9 @@ from collections.abc import Callable
 from random import Random
 from typing import Any
 
-from ifgen_runtime import decoding, deserialize, encoding, serialize
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime import deserialize, serialize
+from ifgen_runtime.codec import decoding, encoding
+from ifgen_runtime.codec.choice import chosen
 from ifgen_runtime.views import decoders
 
 from . import objects, payloads

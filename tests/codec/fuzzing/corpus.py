@@ -9,8 +9,8 @@ from struct import pack, unpack
 from typing import Any
 
 import numpy
-from ifgen_runtime.creation import creator
-from ifgen_runtime.encoding import encode_any
+from ifgen_runtime.codec.creation import creator
+from ifgen_runtime.codec.encoding import encode_any
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 
 from ..big_endian import big_endian

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ifgen.generator_py.codec import extent
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.codec.choice import chosen
 
 from ...native import sanitizers
 from ..support import OWN_INTERFACES, ROOT, Classes, generate

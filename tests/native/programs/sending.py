@@ -9,7 +9,7 @@ from typing import Any
 import rclpy
 from common import never_compiled, spin_until
 from ifgen_runtime import SerializationError, serialize
-from ifgen_runtime.native_codec import chosen
+from ifgen_runtime.codec.choice import chosen
 from large_msgs.msg import Many
 from rclpy.serialization import deserialize_message, serialize_message
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from ifgen_runtime import deserialize, serialize
-from ifgen_runtime.decoding import decode_any
+from ifgen_runtime.codec.decoding import decode_any
 from ifgen_runtime.field_types import fields_of
 from ifgen_runtime.numpy import as_array, from_point_array, from_ranges, image_array, scan_points, xyz_array
 from ifgen_runtime.views import SequenceView

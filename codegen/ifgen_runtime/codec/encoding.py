@@ -15,10 +15,10 @@ from sys import byteorder
 from typing import Any
 
 from ifgen_runtime.arrays import array_of, is_array
+from ifgen_runtime.codec.texts import wstring_wire
 from ifgen_runtime.errors import Problem, SerializationError
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 from ifgen_runtime.lazy import numpy
-from ifgen_runtime.strings import wstring_wire
 
 _HEADER_SIZE = 4
 _PACKERS = {character: Struct(f"<{character}").pack for character in "?cbBhHiIqQfd"}

@@ -11,10 +11,8 @@ from itertools import repeat
 from struct import Struct, unpack_from
 from sys import byteorder
 
-from ifgen_runtime.creation import creator
-from ifgen_runtime.lazy import LazyModule
-from ifgen_runtime.numeric import numeric
-from ifgen_runtime.strings import (
+from ifgen_runtime.codec.creation import creator
+from ifgen_runtime.codec.texts import (
     any_longer,
     padded_strings_wire,
     padded_wire,
@@ -26,6 +24,8 @@ from ifgen_runtime.strings import (
     wstrings,
     wstrings_wire,
 )
+from ifgen_runtime.lazy import LazyModule
+from ifgen_runtime.numeric import numeric
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def __getattr__(name: str) -> Any:
     """`serialize` and `deserialize`, in C or in Python. Who asks for them is about to use them."""
     if name not in ("serialize", "deserialize"):
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from ifgen_runtime.native_codec import chosen  # message packages do without
+    from ifgen_runtime.codec.choice import chosen  # message packages do without
 
     native = chosen().extension
     function = getattr(native, name) if native else globals()[f"{name}_in_python"]
@@ -171,7 +171,7 @@ def attach_codec(
         encode, decode = encode_any, lambda data: decode_any(data, cls)
     cls.__nested__ = nested
     if table:
-        cls.__codec__ = encode, decode, table  # for native_codec.attached, when it is first used
+        cls.__codec__ = encode, decode, table  # for choice.attached, when it is first used
         return
     cls.__serialize__ = encode
     cls.__deserialize__ = staticmethod(decode)
@@ -195,7 +195,7 @@ def reader_of(cls: type[Any]) -> Read:
 
 def _write_any(message: Any, out: list[Any], p: int) -> int:
     """For classes that rosidl compiled, or an ifgen to which they were not large."""
-    from ifgen_runtime.encoding import encode_part  # most programs never come here
+    from ifgen_runtime.codec.encoding import encode_part  # most programs never come here
 
     part = encode_part(message, p & 7)
     out.append(part)
@@ -203,7 +203,7 @@ def _write_any(message: Any, out: list[Any], p: int) -> int:
 
 
 def _read_any(message: Any, data: bytes, view: memoryview, words: memoryview, p: int) -> int:
-    from ifgen_runtime.decoding import Reader  # most programs never come here
+    from ifgen_runtime.codec.decoding import Reader  # most programs never come here
 
     reader = Reader(data, "<", p)
     reader.fill(message)
@@ -212,14 +212,14 @@ def _read_any(message: Any, data: bytes, view: memoryview, words: memoryview, p:
 
 def encode_any(message: Any) -> bytes:
     """The result of a generated function that met an unexpected value."""
-    from ifgen_runtime.encoding import encode_any  # most programs never come here
+    from ifgen_runtime.codec.encoding import encode_any  # most programs never come here
 
     return encode_any(message)
 
 
 def decode_any(data: bytes, cls: type[Any], views: object = None) -> Any:
     """The result of a generated function that met unexpected bytes."""
-    from ifgen_runtime.decoding import decode_any  # most programs never come here
+    from ifgen_runtime.codec.decoding import decode_any  # most programs never come here
 
     return decode_any(data, cls, views=views is not None)
 

@@ -139,7 +139,7 @@ def wstrings_wire(texts: list[str]) -> bytes:
 
 def wstring(data: bytes, p: int, maximum: int | None) -> tuple[str, int]:
     """A wstring from position `p` on, and the position after it."""
-    from ifgen_runtime.decoding import Reader  # few programs meet a wstring
+    from ifgen_runtime.codec.decoding import Reader  # few programs meet a wstring
 
     reader = Reader(data, "<", p)
     return reader.wide_text(maximum), reader.position
@@ -147,7 +147,7 @@ def wstring(data: bytes, p: int, maximum: int | None) -> tuple[str, int]:
 
 def wstrings(data: bytes, p: int, count: int, maximum: int | None) -> tuple[list[str], int]:
     """`count` wstrings from position `p` on, and the position after them."""
-    from ifgen_runtime.decoding import Reader  # few programs meet a wstring
+    from ifgen_runtime.codec.decoding import Reader  # few programs meet a wstring
 
     reader = Reader(data, "<", p)
     return [reader.wide_text(maximum) for _ in repeat(None, count)], reader.position
