@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from operator import eq
 from typing import Final
 
 from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, InputError, Label, Span
 from ifgen.evolution.lock_file import Lock
 from ifgen.evolution.lock_text import NAME, definition_text, definitions, written_parts
+from ifgen.evolution.messages import paired_constants, paired_fields
 
 _HELP: Final = f"read `ifgen breaking --against {NAME}`; if this is intended, run `ifgen lock` again"
 
@@ -45,50 +47,22 @@ def _differences(lock: Lock, registries: list[Registry]) -> Iterator[Diagnostic]
 
 
 def _changes(old: Message, new: Message) -> Iterator[Diagnostic]:
-    """The differences between two versions of a message, in the order of the new one."""
-    before, after = _texts(old), _texts(new)
-    if before == after:
+    """The differences between two versions of a message: fields, constants, then the order of fields."""
+    if list(definitions(old)) == list(definitions(new)):
         return
-    gone = {name: place for name, place in before.items() if name not in after}
-    for name, (text, span) in after.items():
-        if name not in before:
-            yield from _added(name, text, span, gone, old, new)
-        elif before[name][0] != text:
-            was, place = before[name]
-            message = f"{new.type_name}: `{text}` was `{was}`"
-            yield _difference(message, _label(span, "this is new"), _label(place, "this is locked"))
-    for text, place in gone.values():
-        message = f"{new.type_name}: `{text}` is gone"
-        yield _difference(message, _whole(new), _label(place, "this is locked"))
+    fields = paired_fields(old.fields, new.fields, eq)
+    for before, after in (*fields, *paired_constants(old.constants, new.constants)):
+        was, now = (item and definition_text(item) for item in (before, after))
+        if before is None and after is not None:
+            message = f"{new.type_name}: `{now}` is not in {NAME}"
+            yield _difference(message, _label(after.span, "this is new"), _place(old))
+        elif after is None and before is not None:
+            message = f"{new.type_name}: `{was}` is gone"
+            yield _difference(message, _whole(new), _label(before.span, "this is locked"))
+        elif before is not None and after is not None and was != now:
+            places = _label(after.span, "this is new"), _label(before.span, "this is locked")
+            yield _difference(f"{new.type_name}: `{now}` was `{was}`", *places)
     yield from _moved(old, new)
-
-
-def _added(
-    name: str,
-    text: str,
-    span: Span | None,
-    gone: dict[str, tuple[str, Span | None]],
-    old: Message,
-    new: Message,
-) -> Iterator[Diagnostic]:
-    """A definition that is new, or one that has another name at the same place: that one is not `gone`."""
-    was = _renamed(name, old, new)
-    if was is not None and was in gone:
-        before, place = gone.pop(was)
-        message = f"{new.type_name}: `{text}` was `{before}`"
-        yield _difference(message, _label(span, "this is new"), _label(place, "this is locked"))
-        return
-    yield _difference(f"{new.type_name}: `{text}` is not in {NAME}", _label(span, "this is new"), _place(old))
-
-
-def _renamed(name: str, old: Message, new: Message) -> str | None:
-    """The former name of a field that has the place and the type of another one."""
-    if len(old.fields) != len(new.fields):
-        return None
-    for before, after in zip(old.fields, new.fields, strict=True):
-        if after.name == name:
-            return before.name if before.type == after.type else None
-    return None
 
 
 def _moved(old: Message, new: Message) -> Iterator[Diagnostic]:
@@ -100,11 +74,6 @@ def _moved(old: Message, new: Message) -> Iterator[Diagnostic]:
     was, now = old.fields[first], new.fields[first]
     message = f"{new.type_name}: the field '{now.name}' is now where '{was.name}' was"
     yield _difference(message, _label(now.span, "this is new"), _label(was.span, "this is locked"))
-
-
-def _texts(message: Message) -> dict[str, tuple[str, Span | None]]:
-    """The fields and constants of a message by name, each as a lock file writes it, with its place."""
-    return {item.name: (definition_text(item), item.span) for item in definitions(message)}
 
 
 def _difference(message: str, primary: Label | None, secondary: Label | None = None) -> Diagnostic:

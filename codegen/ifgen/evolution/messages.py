@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from ifgen.definition.interfaces import Constant, Field
@@ -62,17 +62,8 @@ class Comparison:
         yield from _constants(within)
 
     def pairs(self, within: Versions) -> list[tuple[Field | None, Field | None]]:
-        """The fields of both versions, side by side: one that has been renamed is beside itself."""
-        old, new = within.old.fields, within.new.fields
-        in_old, in_new = {f.name: f for f in old}, {f.name: f for f in new}
-        renamed = self._renamed(old, new)
-        gone_to = dict(renamed)
-        come = set(gone_to.values())
-        pairs: list[tuple[Field | None, Field | None]] = [
-            (field, in_new.get(gone_to.get(field.name, field.name))) for field in old
-        ]
-        pairs += ((None, f) for f in new if f.name not in in_old and f.name not in come)
-        return pairs
+        """The fields of both versions, side by side."""
+        return paired_fields(within.old.fields, within.new.fields, self.same_type)
 
     def same_type(self, old: FieldType, new: FieldType) -> bool:
         """Whether a type is the same, but for names that have changed as a whole."""
@@ -85,18 +76,6 @@ class Comparison:
         renamed = NamespacedType(*self.renamed(value_type.type_name).split("/"))
         return replace(type_, value_type=renamed) if isinstance(type_, CollectionType) else renamed
 
-    def _renamed(self, old: Sequence[Field], new: Sequence[Field]) -> list[tuple[str, str]]:
-        """The old and the new names of fields that have the same type and place as before."""
-        in_old, in_new = {f.name for f in old}, {f.name for f in new}
-        gone = _by_gap(old, in_new)
-        come = _by_gap(new, in_old)
-        return [
-            (before.name, after.name)
-            for gap, fields in gone.items()
-            for before, after in zip(fields, come.get(gap, ()), strict=False)
-            if self.same_type(before.type, after.type)
-        ]
-
     def _field(self, within: Versions, old: Field, new: Field) -> Iterator[MessageEdit]:
         if self.same_type(old.type, new.type):
             if not same_default(old, new):
@@ -107,7 +86,44 @@ class Comparison:
         yield FieldRetyped(within, old, new, same_layout, same_values)
 
 
-def _by_gap(fields: Sequence[Field], in_other: set[str]) -> dict[str, list[Field]]:
+def paired_fields(
+    old: Sequence[Field], new: Sequence[Field], same_type: Callable[[FieldType, FieldType], bool]
+) -> list[tuple[Field | None, Field | None]]:
+    """The fields of both versions, side by side: one that has been renamed is beside itself.
+
+    Renamed are those that have the same type and place as before.
+    """
+    in_old, in_new = {f.name: f for f in old}, {f.name: f for f in new}
+    gone, come = _by_gap(old, in_new), _by_gap(new, in_old)
+    renamed = {
+        before.name: after
+        for gap, fields in gone.items()
+        for before, after in zip(fields, come.get(gap, ()), strict=False)
+        if same_type(before.type, after.type)
+    }
+    known = {field.name for field in renamed.values()} | in_old.keys()
+    return [
+        *((field, renamed.get(field.name, in_new.get(field.name))) for field in old),
+        *((None, field) for field in new if field.name not in known),
+    ]
+
+
+def paired_constants(
+    old: Sequence[Constant], new: Sequence[Constant]
+) -> list[tuple[Constant | None, Constant | None]]:
+    """The same for constants: renamed are those that have the same type and value as before."""
+    in_old, in_new = {c.name for c in old}, {c.name: c for c in new}
+    come = [constant for constant in new if constant.name not in in_old]
+    pairs: list[tuple[Constant | None, Constant | None]] = []
+    for constant in old:
+        beside = in_new.get(constant.name) or _same_value(constant, come)
+        if beside in come:
+            come.remove(beside)
+        pairs.append((constant, beside))
+    return [*pairs, *((None, constant) for constant in come)]
+
+
+def _by_gap(fields: Sequence[Field], in_other: Container[str]) -> dict[str, list[Field]]:
     """The fields that the other version does not have, by the last one before them that it has."""
     gap = ""
     found: dict[str, list[Field]] = {}
@@ -150,19 +166,16 @@ def _named(fields: Sequence[Field], name: str) -> Field:
 
 
 def _constants(within: Versions) -> Iterator[MessageEdit]:
-    in_old = {constant.name: constant for constant in within.old.constants}
-    in_new = {constant.name: constant for constant in within.new.constants}
-    come = [constant for constant in within.new.constants if constant.name not in in_old]
-    for old in within.old.constants:
-        if (same := in_new.get(old.name)) is not None:
-            if not same_constant(old, same):
-                yield ConstantChanged(within, old, same)
-        elif (new := _same_value(old, come)) is not None:
-            come.remove(new)
-            yield ConstantRenamed(within, old, new)
-        else:
+    for old, new in paired_constants(within.old.constants, within.new.constants):
+        if old is None and new is not None:
+            yield ConstantAdded(within, new)
+        elif new is None and old is not None:
             yield ConstantRemoved(within, old)
-    yield from (ConstantAdded(within, constant) for constant in come)
+        elif old is not None and new is not None:
+            if old.name != new.name:
+                yield ConstantRenamed(within, old, new)
+            elif not same_constant(old, new):
+                yield ConstantChanged(within, old, new)
 
 
 def _same_value(old: Constant, come: Sequence[Constant]) -> Constant | None:
