@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from ifgen_runtime.convert import to_dict
 from ifgen_runtime.type_description import describe, sources, type_name
 
 
@@ -55,4 +56,16 @@ def definition_of(cls: type[Any]) -> Definition:
     return Definition(describe(cls), tuple(sources(cls)))
 
 
-__all__ = ["Definition", "Mismatch", "Side", "definition_of", "type_name"]
+def definition_from(response: Any) -> Definition:
+    """The definition in a response of another node's `~/get_type_description`.
+
+    It is what that node says: nobody has checked it yet. Raises ValueError, with the node's reason, if the
+    node refused.
+    """
+    if not response.successful:
+        raise ValueError(response.failure_reason or "the node does not say why")
+    texts = ((known.type_name, known.encoding, known.raw_file_contents) for known in response.type_sources)
+    return Definition(to_dict(response.type_description), tuple(texts))
+
+
+__all__ = ["Definition", "Mismatch", "Side", "definition_from", "definition_of", "type_name"]
