@@ -9,6 +9,8 @@ TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
 # Tests that the codec in C and the generated functions must pass alike: `make test` runs them with each.
 BOTH_CODECS := $(addprefix tests/,$(addprefix codec/test_,$(addsuffix .py,hostile_input large refusals round_trip views wire)) \
 	runtime/test_message_classes.py against_rosidl/test_classes.py)
+# The packages that nodes import besides rclpy.
+LIBRARIES := $(patsubst codegen/libraries/%/__init__.py,%,$(wildcard codegen/libraries/*/__init__.py))
 CASES := 1000000
 EMPTY :=
 # The folders of generated packages of nodes, with colons between them.
@@ -51,9 +53,10 @@ lint: $(VENV)/.test  ## check style, types, imports between rooms, and that gene
 	$(BIN)/ruff format --check
 	$(BIN)/mypy $(TYPED)
 	MYPYPATH=codegen/underlay $(BIN)/mypy -p rclpy -p rmw_local -p ifgen_pytest
+	MYPYPATH=codegen/underlay:codegen/libraries $(BIN)/mypy $(addprefix -p ,$(LIBRARIES))
 	MYPYPATH=codegen/underlay:examples:$(NODES) $(BIN)/mypy -p humanoid
 	$(BIN)/pyright
-	PYTHONPATH=codegen/underlay:examples $(BIN)/lint-imports
+	PYTHONPATH=codegen/underlay:codegen/libraries:examples $(BIN)/lint-imports
 	$(BIN)/ifgen generate --check
 
 bench: $(VENV)/.test  ## measure, and write docs/benchmarks.md

@@ -74,6 +74,12 @@ def underlay() -> Path:
     return folder
 
 
+def libraries() -> Path:
+    """The packages that nodes import besides rclpy, for where there are no others."""
+    folder: Path = _runtime().libraries()
+    return folder
+
+
 def cache_folder() -> Path:
     """The user's folder for what is kept between runs; to lose it at any time costs time only."""
     import platformdirs  # by far the slowest of what this module needs

@@ -23,7 +23,8 @@ def hint(error: BaseException | None) -> str | None:
             continue
         if (output / name).is_dir():
             return f"'{name}' is in {os.path.relpath(output)}: {_WAY}"
-        if any((folder / name).is_dir() for folder in (resources.underlay(), resources.bundled_generated())):
+        folders = (resources.underlay(), resources.bundled_generated(), resources.libraries())
+        if any((folder / name).is_dir() for folder in folders):
             return f"'{name}' comes with ifgen: {_WAY}"
     return None
 

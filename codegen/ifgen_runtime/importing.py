@@ -9,7 +9,7 @@ TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from pathlib import Path
 
-__all__ = ["ensure_importable", "messages", "underlay"]
+__all__ = ["ensure_importable", "libraries", "messages", "underlay"]
 
 
 def messages() -> Path:
@@ -22,8 +22,13 @@ def underlay() -> Path:
     return _inside_or("underlay", "underlay")
 
 
+def libraries() -> Path:
+    """The folder of what nodes import besides rclpy, such as `message_filters`."""
+    return _inside_or("libraries", "libraries")
+
+
 def ensure_importable(*packages: str) -> None:
-    """Let packages of messages, and `rclpy`, be imported: ours, where there are no others.
+    """Let packages of messages, `rclpy` and libraries of nodes be imported: ours, where there are no others.
 
     Generated packages that pip installs call it. No distribution may install a `std_msgs` or an `rclpy`,
     because it would hide the one of a ROS. So our folders go to the end of `sys.path`, after everything else.
@@ -31,7 +36,13 @@ def ensure_importable(*packages: str) -> None:
     missing = [name for name in packages if name not in sys.modules and find_spec(name) is None]
     if missing:
         folders = ([underlay()] if "rclpy" in missing else []) + [messages()]
-        sys.path += [str(folder) for folder in folders if str(folder) not in sys.path]
+        _append(folders)
+    if "rclpy" in packages:  # of a package of nodes; a real rclpy need not have all of the libraries
+        _append([libraries()])
+
+
+def _append(folders: list[Path]) -> None:
+    sys.path += [str(folder) for folder in folders if str(folder) not in sys.path]
 
 
 def _inside_or(name: str, in_checkout: str) -> Path:

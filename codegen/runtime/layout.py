@@ -8,7 +8,7 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-_SOURCES = {"ifgen_runtime": "..", "underlay": "..", "generated": "../.."}
+_SOURCES = {"ifgen_runtime": "..", "libraries": "..", "underlay": "..", "generated": "../.."}
 _TESTS = "test"
 _ONLY_PACKAGES_OF_NODES_HAVE = "setup.py"
 
@@ -30,6 +30,7 @@ class Layout(BuildHookInterface):  # type: ignore[type-arg]  # hatchling's own d
         included = {
             str(sources["ifgen_runtime"]): "ifgen_runtime",
             str(sources["underlay"]): f"{inner}underlay",
+            str(sources["libraries"]): f"{inner}libraries",
         }
         for entry in _of_message_packages(sources["generated"]):
             included[str(entry)] = f"{inner}generated/{entry.relative_to(sources['generated']).as_posix()}"

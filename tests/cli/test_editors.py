@@ -12,7 +12,8 @@ from .conftest import Run, write
 
 
 def test_folders_before_there_are_stubs(ifgen: Run, demo_msgs: Path) -> None:
-    bundled = [resources.underlay().as_posix(), resources.bundled_generated().as_posix()]
+    folders = (resources.underlay(), resources.bundled_generated(), resources.libraries())
+    bundled = [folder.as_posix() for folder in folders]
     assert ifgen("paths").out.splitlines() == bundled
     ifgen("generate", demo_msgs)
     assert ifgen("paths").out.splitlines() == ["generated", *bundled]
@@ -53,6 +54,7 @@ def test_mypy_is_not_told_of_folders_that_it_refuses(
     installed = tmp_path / "site-packages" / "ifgen_runtime" / "underlay"
     monkeypatch.setattr(resources, "underlay", lambda: installed)
     monkeypatch.setattr(resources, "bundled_generated", lambda: installed)
+    monkeypatch.setattr(resources, "libraries", lambda: installed)
     asked = ifgen("paths", "--format", "mypy")
     assert asked.out == "[tool.mypy]\nmypy_path = []\n"
     assert "run `ifgen typings` first" in asked.err

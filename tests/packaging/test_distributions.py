@@ -60,6 +60,8 @@ def test_the_wheels_have_everything_and_shadow_nothing(wheels: tuple[Path, Path]
         "ifgen_runtime/generated/std_msgs/py.typed",
         "ifgen_runtime/underlay/rclpy/__init__.py",
         "ifgen_runtime/underlay/rmw_local/__init__.py",
+        "ifgen_runtime/libraries/ament_index_python/__init__.py",
+        "ifgen_runtime/libraries/ament_index_python/py.typed",
     ):
         assert name in runtime
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-_CODE = ("ifgen", "ifgen_pytest", "ifgen_runtime", "underlay", "packaging")
+_CODE = ("ifgen", "ifgen_pytest", "ifgen_runtime", "underlay", "libraries", "packaging")
 _EMPTY = re.compile(r"(What|Who|Whose|Whom)\b|See `?[\w.]+`?\.?$")
 _TICS = re.compile(
     r"\b(so many(?! \w+ that)|anew|what there is|takes? no part|be it|no such a|is called as|passed over|to be had)\b"

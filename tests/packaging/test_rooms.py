@@ -58,3 +58,17 @@ def test_what_contributors_are_to_open_is_there() -> None:
         for cell, folder in zip(cells, ("codegen", "tests"), strict=True):
             for name in re.findall(r"`([^`]+)`", cell):
                 assert (ROOT / name if name.startswith("docs/") else ROOT / folder / name).exists(), name
+
+
+def test_each_library_is_in_the_contracts_and_on_its_page() -> None:
+    libraries = [path.parent.name for path in sorted((ROOT / "codegen/libraries").glob("*/__init__.py"))]
+    assert libraries
+    linter = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
+    contracts = {contract["name"]: contract for contract in linter["contracts"]}
+    page = (ROOT / "docs/libraries.md").read_text()
+    for name in libraries:
+        assert name in linter["root_packages"]
+        assert name in contracts["libraries stand on rclpy's public API"]["source_modules"]
+        assert name in contracts["nothing of ours needs the libraries"]["forbidden_modules"]
+        assert f"| `{name}` |" in page
+        assert (ROOT / "codegen/libraries" / name / "py.typed").exists()

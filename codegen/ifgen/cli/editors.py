@@ -95,7 +95,8 @@ def _folders(settings: Settings, typings: Path | None) -> list[Path]:
     stubs = root / TYPINGS if typings is None else typings.absolute()
     if are_there(stubs):
         return [*own, stubs]
-    return list(dict.fromkeys([*own, resources.underlay(), resources.bundled_generated()]))
+    bundled = (resources.underlay(), resources.bundled_generated(), resources.libraries())
+    return list(dict.fromkeys([*own, *bundled]))
 
 
 def _is_installed(folder: Path) -> bool:

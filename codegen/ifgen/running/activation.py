@@ -43,13 +43,15 @@ def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | 
         )
     _refuse_mixture(chosen, real)
     own, bundled = import_folders(generated) if generated else [], str(resources.bundled_generated())
+    libraries = str(resources.libraries())
     if chosen == "local":
         # The user's packages come before ours, except folders that contain a real ROS.
         ros = {entry for entry in real if _has_ros(entry)}
         users = [entry for entry in real if entry not in ros]
-        path = [str(resources.underlay()), *own, *users, bundled, *(entry for entry in real if entry in ros)]
+        last = [entry for entry in real if entry in ros]
+        path = [str(resources.underlay()), *own, *users, bundled, libraries, *last]
     else:
-        path = [*real, *own, bundled]
+        path = [*real, *own, bundled, libraries]
     sys.path[:] = dict.fromkeys(_with_nodes_of_examples(path, chosen))
     return chosen
 
@@ -96,7 +98,8 @@ def _with_nodes_of_examples(path: Iterable[str], chosen: Transport) -> Iterator[
 
 def _real_path() -> list[str]:
     """`sys.path` without our folders."""
-    ours = {str(resources.underlay()), str(resources.bundled_generated()), *_bundled_nodes()}
+    folders = (resources.underlay(), resources.bundled_generated(), resources.libraries())
+    ours = {*map(str, folders), *_bundled_nodes()}
     return [entry for entry in sys.path if entry not in ours]
 
 
