@@ -6,11 +6,22 @@ look them up by the hash of the other version.
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from ifgen_runtime.codec import deserialize, serialize
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
+
+    from ifgen_runtime.codec import Buffer
+
+MessageT = TypeVar("MessageT")
+
+
+class AdapterError(LookupError):
+    """There is no adapter, or one was written for another version than the program has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,25 +30,134 @@ class Adapter:
 
     `old` is the class of the other version, with its `__type_hash__`; `new` the one that the program uses.
     `downgrade` is None if nobody wrote it: then nothing can be sent to the other version.
+
+    `new_hash` is the hash of the version that `upgrade` was written for. `within` is the hash of the other
+    version of the service or the action, for a part of one: peers are known by that.
     """
 
     old: type[Any]
     new: type[Any]
     upgrade: Callable[[Any], Any]
     downgrade: Callable[[Any], Any] | None = None
+    new_hash: str = ""
+    within: str = ""
+
+    def __post_init__(self) -> None:
+        """Compare the version that this was written for with the one that is there."""
+        found = _hash_of(self.new)
+        if self.new_hash and found and found != self.new_hash:
+            raise AdapterError(
+                f"the adapter from {self.old.__name__} {short(_hash_of(self.old))} was written for "
+                f"{self.new.__name__} {short(self.new_hash)}, which is {short(found)} now: run "
+                f"`ifgen adapt` with `--from {short(self.new_hash)}`, and let this adapter import the class "
+                "that it writes"
+            )
 
 
-_ADAPTERS: dict[tuple[str, type[Any]], Adapter] = {}
+_registered: dict[tuple[str, type[Any]], Adapter] = {}
+_found: dict[tuple[str, type[Any]], Adapter | None] = {}
+"""What `adapter_for` has found since an adapter was registered, chains included."""
 
 
 def register(adapter: Adapter) -> None:
     """Use an adapter from now on, instead of an earlier one for the same two versions."""
-    _ADAPTERS[adapter.old.__type_hash__, adapter.new] = adapter
+    for type_hash in {_hash_of(adapter.old), adapter.within} - {""}:
+        _registered[type_hash, adapter.new] = adapter
+    _found.clear()
 
 
 def adapter_for(type_hash: str, cls: type[Any]) -> Adapter | None:
     """The adapter from the version with this hash to a class; None if none is registered.
 
-    For messages, and for the requests and responses of services.
+    For messages, and for the parts of services and actions, by the hash of the other part or of the service
+    or action that it belongs to. Where no adapter does it in one step, it is the shortest chain: from A to B,
+    and from B to `cls`.
     """
-    return _ADAPTERS.get((type_hash, cls))
+    key = type_hash, cls
+    try:
+        return _found[key]
+    except KeyError:
+        found = _found[key] = _registered.get(key) or _chain(type_hash, cls)
+        return found
+
+
+def decode(data: Buffer, type_hash: str, cls: type[MessageT]) -> MessageT:
+    """The message of class `cls` in the bytes of a message of the version with this hash.
+
+    Raises AdapterError if there is no adapter, and DeserializationError if the bytes hold no such message.
+    """
+    if type_hash == _hash_of(cls):
+        return deserialize(data, cls)
+    adapter = adapter_for(type_hash, cls)
+    if adapter is None:
+        raise AdapterError(
+            f"no adapter from {short(type_hash)} to {cls.__name__} {short(_hash_of(cls))} is registered: "
+            f"`ifgen adapt TYPE --from {short(type_hash)}` writes one, and importing it registers it"
+        )
+    upgraded: MessageT = adapter.upgrade(deserialize(data, adapter.old))
+    return upgraded
+
+
+def short(type_hash: str) -> str:
+    """The first digits of a hash, which tell versions of a type apart."""
+    return type_hash.removeprefix("RIHS01_")[:8]
+
+
+def unchanged(message: MessageT) -> MessageT:
+    """Convert a part of a service or an action that is the same in both versions."""
+    return message
+
+
+def _hash_of(cls: type[Any]) -> str:
+    return getattr(cls, "__type_hash__", "")  # rosidl's compiled classes have none
+
+
+def _chain(type_hash: str, cls: type[Any]) -> Adapter | None:
+    """Adapters one after the other; each version is visited once, so no circle can hold this up."""
+    visited = {_hash_of(cls)}
+    if type_hash in visited:
+        return None
+    pending: deque[tuple[Adapter, ...]] = deque((step,) for step in _steps_to(_hash_of(cls), cls))
+    while pending:
+        steps = pending.popleft()
+        first = steps[0]
+        if type_hash in {_hash_of(first.old), first.within}:
+            return _joined(steps, cls)
+        if _hash_of(first.old) not in visited:
+            visited.add(_hash_of(first.old))
+            pending.extend((before, *steps) for before in _steps_to(_hash_of(first.old), first.old))
+    return None
+
+
+def _steps_to(type_hash: str, cls: type[Any]) -> Iterator[Adapter]:
+    """The adapters to a class, then those to other classes of the same version."""
+    others: list[Adapter] = []
+    for adapter in dict.fromkeys(_registered.values()):
+        if adapter.new is cls:
+            yield adapter
+        elif type_hash and type_hash in {adapter.new_hash, _hash_of(adapter.new)}:
+            others.append(adapter)
+    yield from others
+
+
+def _joined(steps: tuple[Adapter, ...], cls: type[Any]) -> Adapter:
+    old, last = steps[0].old, steps[-1]
+
+    def upgrade(message: Any) -> Any:
+        for step in steps:
+            message = step.upgrade(_as(step.old, message))
+        return _as(cls, message)
+
+    def downgrade(message: Any) -> Any:
+        for step in reversed(steps):
+            assert step.downgrade is not None
+            message = step.downgrade(_as(step.new, message))
+        return _as(old, message)
+
+    is_complete = all(step.downgrade is not None for step in steps)
+    return Adapter(old, cls, upgrade, downgrade if is_complete else None, last.new_hash, steps[0].within)
+
+
+def _as(cls: type[MessageT], message: Any) -> MessageT:
+    """A message of another class of the same version, by its bytes."""
+    return message if isinstance(message, cls) else deserialize(serialize(message), cls)
