@@ -1,7 +1,7 @@
 """Strict mode: what goes by silently in a running robot, and should not in a test.
 
-Exceptions are watched on both transports; nodes, messages, QoS and synchronous calls on the local one, which
-can be looked into (`rmw_local.observer`).
+Exceptions and definitions that differ are watched on both transports; nodes, messages, QoS and synchronous
+calls on the local one, which can be looked into (`rmw_local.observer`).
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ class StrictCheck:
         self._told: list[BaseException] = []
         self._undo: list[tuple[Any, str, Any]] = []
         self._findings = TransportRecord()
+        self._mismatches: list[Any] = []  # pairs of endpoints whose definitions differ
         self._exchange(threading, "excepthook", self._on_thread_error)
         self._watch_rclpy()
 
@@ -45,6 +46,7 @@ class StrictCheck:
 
         self._exchange(task.Future, "set_exception", set_and_note)
         self._watch_actions()
+        self._watch_definitions()
         try:
             observer = importlib.import_module("rmw_local.observer")
             sync_calls = importlib.import_module("rclpy.impl.sync_calls")
@@ -52,6 +54,14 @@ class StrictCheck:
             return  # the real rclpy
         self._exchange(sync_calls, "enabled", True)
         self._undo.append((observer._Current, "observer", observer.install(self._findings)))
+
+    def _watch_definitions(self) -> None:
+        """Note endpoints whose definitions differ; nobody compares them without generated messages."""
+        try:
+            listeners = importlib.import_module("ifgen_runtime.mismatch.listeners")
+        except ImportError:
+            return
+        self._exchange(listeners, "heard", self._mismatches.append)
 
     def _watch_actions(self) -> None:
         """Note what goals raise: an action server only logs it, and aborts the goal."""
@@ -90,7 +100,16 @@ class StrictCheck:
 
     def left_over(self) -> str:
         """Everything else that is wrong, a line each."""
-        return "\n".join(f"ros_strict: {line}" for line in self._findings.report())
+        lines = [*self._findings.report(), *self._differing()]
+        return "\n".join(f"ros_strict: {line}" for line in lines)
+
+    def _differing(self) -> list[str]:
+        """A text for each mismatch, except where an adapter does what the test wants."""
+        wrong = [mismatch for mismatch in self._mismatches if mismatch.policy != "adapt"]
+        if not wrong:
+            return []
+        explain = importlib.import_module("ifgen_runtime.mismatch.explanation").explanation
+        return [explain(mismatch) for mismatch in wrong]
 
     def end(self) -> None:
         """Watch no more."""

@@ -209,3 +209,24 @@ def test_setting_and_projects_without_ros(pytester: pytest.Pytester) -> None:
     result = pytester.runpytest_subprocess()
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(["ros_strict: thread * raised", "*ZeroDivisionError*"])
+
+
+DIFFERING = """
+import pytest
+from ifgen_runtime.mismatch.listeners import tell
+from ifgen_runtime.mismatch.sides import Mismatch, Side
+
+
+@pytest.mark.parametrize("policy", ["warn", "adapt"])
+def test_definitions(ros_node, policy):
+    mine, theirs = (Side(f"/{role}", role, f"RIHS01_{role}") for role in ("subscription", "publisher"))
+    tell(Mismatch("topic", "/path", "acme_msgs/msg/Path", policy, mine, theirs))
+"""
+
+
+@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_rclpy)])
+def test_definitions_that_differ_unless_they_are_adapted(pytester: pytest.Pytester, transport: str) -> None:
+    pytester.makepyfile(DIFFERING)
+    result = pytester.runpytest_subprocess(f"--transport={transport}", "--ros-strict")
+    result.assert_outcomes(passed=2, errors=1)
+    result.stdout.fnmatch_lines(["ros_strict: *'/path'*"])
