@@ -12,8 +12,7 @@ from itertools import chain
 
 from ifgen_runtime.copying import ITERABLES
 from ifgen_runtime.errors import Problem, WrongKind
-from ifgen_runtime.lazy import numpy
-from ifgen_runtime.numeric import numeric
+from ifgen_runtime.lazy import numeric, numpy
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:

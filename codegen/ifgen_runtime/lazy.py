@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import sys
-from importlib import import_module
-from types import ModuleType
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from types import ModuleType
     from typing import Any
 
     import numpy
 
     LazyModule = ModuleType
 else:
+    ModuleType = type(sys)  # types, importlib and what they import take as long as two message classes
 
     class LazyModule(ModuleType):
         """A module that is imported when something of it is first used, and is ordinary from then on."""
@@ -26,7 +26,29 @@ else:
 
     numpy = LazyModule("numpy")
 
-__all__ = ["LazyModule", "lazy_exports", "numpy"]
+__all__ = ["LazyModule", "lazy_exports", "numeric", "numpy"]
+
+
+def import_module(name: str) -> ModuleType:
+    """Do what `importlib.import_module` does with the full name of a module."""
+    __import__(name)
+    return sys.modules[name]
+
+
+class _Numeric:
+    """numpy's `ndarray` and the dtype objects by their names, loaded with the first fixed numeric array."""
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        import numpy  # takes ten times as long to load as a message package
+
+        value = numpy.ndarray if name == "ndarray" else numpy.dtype(name)
+        setattr(self, name, value)
+        return value
+
+
+numeric: Any = _Numeric()
 
 
 def lazy_exports(

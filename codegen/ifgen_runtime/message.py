@@ -182,9 +182,9 @@ def _copy_as_derived(cls: type) -> None:
 
 def _set_first_methods(namespace: dict[str, Any]) -> None:
     """Put methods for the first use of a class in the place of those that C may do, too."""
-    for name, first in _FIRST_METHODS.items():
+    for name, generated, first in _FIRST_METHODS:
         if name in namespace:
-            namespace[f"__generated_{name[2:]}"] = namespace[name]
+            namespace[generated] = namespace[name]
             namespace[name] = first
 
 
@@ -205,7 +205,10 @@ def _settled(message: Message) -> Any:
     return cls
 
 
-_FIRST_METHODS: dict[str, Any] = {"__eq__": _first_eq, "__deepcopy__": _first_deepcopy}
+_FIRST_METHODS: tuple[tuple[str, str, Any], ...] = (
+    ("__eq__", "__generated_eq__", _first_eq),
+    ("__deepcopy__", "__generated_deepcopy__", _first_deepcopy),
+)
 
 
 def _add_private_names(cls: type, namespace: Mapping[str, Any]) -> list[str]:
@@ -217,7 +220,7 @@ def _add_private_names(cls: type, namespace: Mapping[str, Any]) -> list[str]:
         private = f"_{attribute}"
         if private not in members:
             type.__setattr__(cls, private, members[attribute])
-        if not hasattr(cls, field):  # for tools that go by the names in the definition
+        if attribute != field and not hasattr(cls, field):  # for tools that go by names in the definition
             type.__setattr__(cls, field, members[attribute])
         private_names.append(private)
     return [*private_names, "_check_fields"]

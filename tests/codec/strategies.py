@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy
 from hypothesis import strategies as st
-from ifgen_runtime.codec.creation import creator
+from ifgen_runtime.codec import creator
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 
 MAX_ELEMENTS = 4

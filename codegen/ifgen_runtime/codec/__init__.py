@@ -11,7 +11,6 @@ from itertools import repeat
 from struct import Struct, unpack_from
 from sys import byteorder
 
-from ifgen_runtime.codec.creation import creator
 from ifgen_runtime.codec.texts import (
     any_longer,
     padded_strings_wire,
@@ -24,12 +23,12 @@ from ifgen_runtime.codec.texts import (
     wstrings,
     wstrings_wire,
 )
-from ifgen_runtime.lazy import LazyModule
-from ifgen_runtime.numeric import numeric
+from ifgen_runtime.lazy import LazyModule, numeric
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from functools import partial
     from typing import Any, Literal, TypeAlias, TypeVar, overload
 
     from ifgen_runtime import views as viewing
@@ -41,6 +40,8 @@ if TYPE_CHECKING:
     Write: TypeAlias = Callable[[Any, list[Any], int], int]
     Read: TypeAlias = Callable[[Any, bytes, memoryview, memoryview, int], int]
 else:
+    from _functools import partial  # functools itself takes as long to import as two message classes
+
     viewing = LazyModule("ifgen_runtime.views")
 
 
@@ -222,6 +223,26 @@ def decode_any(data: bytes, cls: type[Any], views: object = None) -> Any:
     from ifgen_runtime.codec.decoding import decode_any  # most programs never come here
 
     return decode_any(data, cls, views=views is not None)
+
+
+def creator(cls: type[Any]) -> Callable[[], Any]:
+    """A function that makes an instance of a message class whose fields are not set yet."""
+    # rosidl's compiled classes keep the switch for checks in a slot; ours inherit a property.
+    if "_check_fields" not in vars(cls) or not _is_slot(vars(cls)["_check_fields"]):
+        return partial(object.__new__, cls)
+
+    def create() -> Any:
+        message: Any = object.__new__(cls)
+        message._check_fields = False
+        return message
+
+    return create
+
+
+def _is_slot(attribute: object) -> bool:
+    from types import MemberDescriptorType  # most programs never come here
+
+    return isinstance(attribute, MemberDescriptorType)
 
 
 def packer(layout: str) -> Callable[..., bytes]:

@@ -15,7 +15,7 @@ from struct import unpack_from
 from sys import byteorder
 from typing import Any
 
-from ifgen_runtime.codec.creation import creator
+from ifgen_runtime.codec import creator
 from ifgen_runtime.errors import DeserializationError, Problem
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of, smallest_element
 from ifgen_runtime.lazy import numpy

@@ -9,7 +9,7 @@ from struct import pack, unpack
 from typing import Any
 
 import numpy
-from ifgen_runtime.codec.creation import creator
+from ifgen_runtime.codec import creator
 from ifgen_runtime.codec.encoding import encode_any
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 
