@@ -9,7 +9,12 @@ import pytest
 
 pytest.importorskip("ifgen_native._native", reason="ifgen_native is not built: `make` does it")
 
-from ifgen_runtime import DeserializationError, deserialize, serialize  # as above
+from ifgen_runtime import (  # as above
+    DeserializationError,
+    SerializationError,
+    deserialize,
+    serialize,
+)
 from ifgen_runtime.codec.choice import chosen  # as above
 
 from .support import generate  # as above
@@ -66,3 +71,27 @@ def test_the_same_strings_are_not_made_again(joints: Any) -> None:
         read(joints, ["a", "long", "name", f"{_}"])
     messages = [read(joints, ["the", "same", "names"]) for _ in range(10)]
     assert messages[-1].name[0] is messages[-2].name[0]
+
+
+def test_strings_are_written_as_they_are_now(joints: Any) -> None:
+    names = list(ARM)
+    message = joints(name=names)
+    for _ in range(3):
+        assert deserialize(serialize(message), joints).name == ARM
+    names[1] = "hand"
+    assert deserialize(serialize(message), joints).name == ["shoulder", "hand", "é", ""]
+    names[1] = 5
+    with pytest.raises(SerializationError, match=r"Joints.name\[1\]: expected str, got int"):
+        serialize(message)
+    names[:] = ARM
+    for end in range(5):
+        names[end:] = []
+        assert deserialize(serialize(message), joints).name == ARM[:end]
+        names[:] = ARM
+
+
+def test_alike_strings_that_are_other_objects(joints: Any) -> None:
+    for round_ in range(20):
+        names = [f"joint_{index}" for index in range(round_)]
+        assert deserialize(serialize(joints(name=names)), joints).name == names
+        assert serialize(joints(name=names)) == serialize(joints(name=[*names]))

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import sys
+from array import array
 from functools import cache
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     Codec: TypeAlias = tuple[Callable[[Any], bytes], Callable[[bytes], Any]]
 
 VARIABLE = "IFGEN_CODEC"
-_ABI = 1  # of the extension's functions and of the text of tables; codec_module.c has the same number
+_ABI = 2  # of the extension's functions and of the text of tables; codec_module.c has the same number
 _CHOICES = ("native", "python")
 
 
@@ -126,6 +127,11 @@ def _attach(
             choice.refused[cls] = str(error)
         else:
             cls.__serialize__, cls.__deserialize__ = methods
+            names = (
+                cls.__init__.__globals__
+            )  # of the module: its constructors and setters make arrays of lists
+            if names.get("new_array") is array:
+                names["new_array"] = choice.extension.codec_array
             return
     cls.__serialize__ = encode
     cls.__deserialize__ = staticmethod(decode)

@@ -1,4 +1,5 @@
-from collections.abc import Callable
+from array import array
+from collections.abc import Callable, Iterable
 from types import CapsuleType
 from typing import Any
 
@@ -62,4 +63,5 @@ def codec_attach(
 def codec_methods(
     cls: type[Any], /
 ) -> tuple[Callable[[Any, object], bool], Callable[[Any, dict[int, Any]], Any], Callable[[Any], Any]]: ...
+def codec_array(typecode: str, values: Iterable[Any], /) -> array[Any]: ...
 def codec_counts() -> tuple[int, int, int]: ...

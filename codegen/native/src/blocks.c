@@ -8,7 +8,7 @@
 /* Memory that waits for its next use. rclpy sends and takes under the GIL, so there is rarely more than one message that
  * is sent and one that is taken. Less is malloc's business, and more is too much to keep for nobody: what waits is at most
  * SPARES * MOST_KEPT bytes. */
-enum { SPARES = 2, LEAST_KEPT = 4 << 10, MOST_KEPT = 8 << 20 };
+enum { SPARES = 2, LEAST_KEPT = 1 << 10, MOST_KEPT = 8 << 20 };
 
 /* In front of the bytes of each block. */
 typedef struct {

@@ -1,5 +1,6 @@
 /* Arrays and sequences of numbers: numpy arrays, array.array. numpy is asked for the first time when a message has an
  * array, since importing it takes longer than everything else. */
+#include "codec_numbers.h"
 #include "codec_wire.h"
 
 /* The public part of numpy's array objects: a part of its binary interface, since code compiled with its headers contains
@@ -157,6 +158,38 @@ bool is_sequence(PyObject *value) {
 
 PyObject *sequence_copy(PyObject *value) {
   return is_sequence(value) ? PySequence_GetSlice(value, 0, PY_SSIZE_T_MAX) : NULL;
+}
+
+/* Write the items of a list or a tuple to memory. Returns how many come before the first that is not exactly a float or an
+ * int that fits. Inlined for each type that is worth it. */
+static inline Py_ssize_t write_items(uint8_t *to, number_type type, PyObject *values, Py_ssize_t count) {
+  const bool is_list = Py_IS_TYPE(values, &PyList_Type);
+  Py_ssize_t i = 0;
+  for (; i < count; i++, to += number_sizes[type])
+    if (!number_write(to, type, is_list ? PyList_GetItem(values, i) : PyTuple_GetItem(values, i))) break;
+  return i;
+}
+
+static bool fill_with_items(PyObject *array, number_type type, PyObject *values, Py_ssize_t count) {
+  Py_buffer view;
+  if (PyObject_GetBuffer(array, &view, PyBUF_WRITABLE)) return PyErr_Clear(), false;
+  const Py_ssize_t written = type == NUMBER_FLOAT64 ? write_items(view.buf, NUMBER_FLOAT64, values, count)
+                                                    : write_items(view.buf, type, values, count);
+  PyBuffer_Release(&view);
+  return written == count;
+}
+
+PyObject *sequence_of_items(PyObject *typecode, PyObject *values) {
+  const char *letter = strchr(number_letters + NUMBER_INT8, (int)PyUnicode_ReadChar(typecode, 0));
+  const number_type type = letter && *letter ? (number_type)(letter - number_letters) : NUMBER_INT8;
+  if (!know_array(type)) return NULL;
+  if (letter && *letter && (Py_IS_TYPE(values, &PyList_Type) || Py_IS_TYPE(values, &PyTuple_Type))) {
+    const Py_ssize_t count = PySequence_Size(values);
+    PyObject *made = PySequence_Repeat(single_elements[type], count);
+    if (!made || fill_with_items(made, type, values, count)) return made;
+    Py_DECREF(made);
+  }
+  return PyObject_CallFunctionObjArgs((PyObject *)array_type, typecode, values, NULL);
 }
 
 static bool fits(const row *r, size_t count) {

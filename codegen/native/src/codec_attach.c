@@ -161,7 +161,10 @@ codec *codec_attach(PyTypeObject *cls, PyObject *encode, PyObject *decode, const
     Py_INCREF(decode);
     Py_INCREF(classes); /* the rows hold them */
     for (row *r = it->table.rows; r < it->table.rows + it->table.row_count; r++)
-      if (r->kind == ROW_TEXTS) r->last_texts = last_texts_make(); /* or NULL without memory */
+      if (r->kind == ROW_TEXTS && !r->size) { /* without a count before them, they would not always be aligned alike */
+        r->last_read = last_texts_make(); /* or NULL without memory */
+        r->last_written = last_texts_make();
+      }
     it->encode = encode;
     it->decode = decode;
     return it;

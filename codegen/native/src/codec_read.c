@@ -38,7 +38,7 @@ static codec_outcome read_list(payload *from, const row *r, PyObject **messages,
   uint32_t count;
   if (depth > TABLE_MAX_DEPTH || !read_element_count(from, r, &count)) return CODEC_UNUSUAL;
   const size_t start = from->at;
-  if (r->last_texts && count && last_texts_read(r->last_texts, from, count, made)) return CODEC_DONE;
+  if (r->last_read && count && last_texts_read(r->last_read, from, count, made)) return CODEC_DONE;
   PyObject *list = PyList_New((Py_ssize_t)count);
   if (!list) return codec_failed();
   for (uint32_t i = 0; i < count; i++) {
@@ -47,7 +47,7 @@ static codec_outcome read_list(payload *from, const row *r, PyObject **messages,
     if (outcome != CODEC_DONE) return Py_DECREF(list), outcome;
     PyList_SetItem(list, (Py_ssize_t)i, element);
   }
-  if (r->last_texts && count) last_texts_keep(r->last_texts, from->data + start, from->at - start, list);
+  if (r->last_read && count) last_texts_keep(r->last_read, from->data + start, from->at - start, list);
   *made = list;
   return CODEC_DONE;
 }

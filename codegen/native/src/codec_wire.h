@@ -66,10 +66,11 @@ codec_outcome wtext_write(codec_buffer *, PyObject *, uint32_t bound);
 codec_outcome text_read(payload *, uint32_t bound, PyObject **);
 codec_outcome wtext_read(payload *, uint32_t bound, PyObject **);
 
-/* codec_last_texts.c: the strings that a row read last, for as long as the process lives. */
+/* codec_last_texts.c: the strings that a row read last, and those that it wrote last, for as long as the process lives. */
 typedef struct last_texts last_texts;
 last_texts *last_texts_make(void);
 bool last_texts_read(last_texts *, payload *, uint32_t count, PyObject **texts); /* whether they are the same again */
+bool last_texts_write(const last_texts *, codec_buffer *, PyObject *texts); /* the same, of a list; false without room, too */
 void last_texts_keep(last_texts *, const uint8_t *bytes, size_t size, PyObject *texts);
 
 /* codec_arrays.c: many numbers, which numpy and array.array hold. */
@@ -81,6 +82,8 @@ codec_outcome array_read(payload *, number_type, size_t count, PyObject **);
 codec_outcome sequence_write(codec_buffer *, PyObject *, const row *);
 codec_outcome sequence_read(payload *, number_type, size_t count, PyObject **);
 bool is_sequence(PyObject *); /* an array.array */
+/* array.array(typecode, values); it takes a tenth of the time where the values are floats or ints in a list or a tuple. */
+PyObject *sequence_of_items(PyObject *typecode, PyObject *values);
 /* A copy of a numpy array with one dimension, of an array.array: as their own functions make it. NULL without an error where
  * it is something else. */
 PyObject *array_copy(PyObject *, number_type);

@@ -30,10 +30,14 @@ static codec_outcome write_list(codec_buffer *buffer, PyObject *value, const row
 static codec_outcome write_texts(codec_buffer *buffer, PyObject *value, const row *r) {
   size_t count;
   codec_outcome outcome = write_list_count(buffer, value, r, &count);
+  const bool is_kept = outcome == CODEC_DONE && r->last_written && count;
+  if (is_kept && last_texts_write(r->last_written, buffer, value)) return CODEC_DONE;
+  const size_t start = buffer->used;
   for (size_t i = 0; outcome == CODEC_DONE && i < count; i++) {
     PyObject *text = PyList_GetItem(value, (Py_ssize_t)i);
     outcome = r->kind == ROW_TEXTS ? text_write(buffer, text, r->bound) : wtext_write(buffer, text, r->bound);
   }
+  if (is_kept && outcome == CODEC_DONE) last_texts_keep(r->last_written, buffer->data + start, buffer->used - start, value);
   return outcome;
 }
 

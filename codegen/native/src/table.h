@@ -61,7 +61,7 @@ typedef struct {
   void *slot;         /* its name: a PyObject, kept for good */
   void *cls;          /* of the message entered, of the elements or of the message called: a PyTypeObject */
   void *called;       /* its codec */
-  struct last_texts *last_texts; /* what a codec read last: of strings */
+  struct last_texts *last_read, *last_written; /* by a codec: of sequences of strings */
 } row;
 
 typedef struct {
