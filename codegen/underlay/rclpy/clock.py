@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-from .clock_type import ClockType
+from .clock_type import ClockType as ClockType  # noqa: PLC0414 - users import it from here
 from .context import Context
 from .destroyable import DestroyableType
 from .duration import Duration

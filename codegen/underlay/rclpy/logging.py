@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.logging_severity import LoggingSeverity
+from rclpy.impl.logging_severity import LoggingSeverity as LoggingSeverity  # noqa: PLC0414 - users import it from here
 from rclpy.impl.rcutils_logger import RcutilsLogger
 
 _root_logger = RcutilsLogger()
