@@ -1,0 +1,27 @@
+"""The answer of sensor_msgs_py where numpy is missing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+
+@pytest.mark.parametrize("module", ["point_cloud2", "numpy_compat"])
+def test_one_clear_error(module: str) -> None:
+    program = f"""
+import sys, ifgen
+sys.modules["numpy"] = None
+ifgen.activate("local")
+import sensor_msgs_py
+try:
+    import sensor_msgs_py.{module}
+except ImportError as error:
+    print(f"{{type(error).__name__}} {{error.name}}: {{error}}")
+    assert error.__cause__ is None and error.__suppress_context__
+"""
+    said = subprocess.check_output([sys.executable, "-c", program], text=True, timeout=60)
+    assert said == (
+        "ModuleNotFoundError numpy: sensor_msgs_py needs numpy: run `python -m pip install numpy`\n"
+    )
