@@ -9,8 +9,9 @@ import json
 import textwrap
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 from ifgen.diagnostics import Diagnostic, Label, Source, shown_path, shown_source
 
@@ -23,16 +24,41 @@ _SEVERITY_STYLE = {"error": "bold red", "warning": "bold yellow"}
 _SECONDARY_STYLE = "bold cyan"
 
 
+class _Output(Protocol):
+    """Text with styles, as rich has it."""
+
+    def append(self, text: str, style: str | None = None) -> Any:
+        """Add text in a style."""
+        ...
+
+
+class _Plain(list[str]):
+    """Text without styles."""
+
+    def append(self, text: str, style: str | None = None) -> None:
+        """Add text."""
+        super().append(text)
+
+
 def for_people(diagnostics: Iterable[Diagnostic], width: int = 80) -> Text:
     """Every diagnostic with its source lines, carets and help, at most `width` cells wide where it can be."""
     from rich.text import Text  # slower to import than most runs are
 
     text = Text()
-    for index, diagnostic in enumerate(diagnostics):
-        if index:
-            text.append("\n")
-        _append_diagnostic(text, diagnostic, width)
+    _append_diagnostics(text, diagnostics, width)
     return text
+
+
+def as_plain_text(diagnostics: Iterable[Diagnostic], width: int = 80) -> str:
+    """The same without styles, for logs; messages are wrapped, too."""
+    text = _Plain()
+    _append_diagnostics(text, (_narrow(diagnostic, width) for diagnostic in diagnostics), width)
+    return "".join(text)
+
+
+def _narrow(diagnostic: Diagnostic, width: int) -> Diagnostic:
+    lead = " " * len(f"{diagnostic.severity}[{diagnostic.rule}]: ")
+    return replace(diagnostic, message=wrapped(lead + diagnostic.message, width, 2).lstrip())
 
 
 def summary(diagnostics: Sequence[Diagnostic]) -> str:
@@ -73,16 +99,23 @@ def _labels(diagnostic: Diagnostic) -> tuple[Label, ...]:
     return () if diagnostic.primary is None else (diagnostic.primary, *diagnostic.secondary)
 
 
-def _append_diagnostic(text: Text, diagnostic: Diagnostic, width: int) -> None:
+def _append_diagnostics(text: _Output, diagnostics: Iterable[Diagnostic], width: int) -> None:
+    for index, diagnostic in enumerate(diagnostics):
+        if index:
+            text.append("\n")
+        _append_diagnostic(text, diagnostic, width)
+
+
+def _append_diagnostic(text: _Output, diagnostic: Diagnostic, width: int) -> None:
     style = _SEVERITY_STYLE[diagnostic.severity]
     text.append(f"{diagnostic.severity}[{diagnostic.rule}]", style)
-    text.append(f": {_printable(diagnostic.message)}\n", "bold")
+    text.append(f": {printable(diagnostic.message)}\n", "bold")
     labels = _labels(diagnostic)
     gutter = max((len(str(label.span.line)) for label in labels), default=1)
     for arrow, source, of_source in _by_source(labels):
         first = of_source[0].span
         text.append(f"{' ' * gutter}{arrow} ", _GUTTER_STYLE)
-        text.append(f"{_printable(shown_source(source))}:{first.line}:{first.column}\n")
+        text.append(f"{printable(shown_source(source))}:{first.line}:{first.column}\n")
         text.append(f"{' ' * gutter} |\n", _GUTTER_STYLE)
         for line in sorted({label.span.line for label in of_source}):
             on_line = [label for label in of_source if label.span.line == line]
@@ -91,7 +124,7 @@ def _append_diagnostic(text: Text, diagnostic: Diagnostic, width: int) -> None:
         lead = f"{' ' * gutter} = " if labels else "  = "
         text.append(lead, _GUTTER_STYLE)
         text.append("help", "bold green")
-        text.append(": " + _wrapped(diagnostic.help, width, len(lead) + len("help: ")) + "\n")
+        text.append(": " + wrapped(diagnostic.help, width, len(lead) + len("help: ")) + "\n")
 
 
 def _by_source(labels: Sequence[Label]) -> Iterator[tuple[str, Source, list[Label]]]:
@@ -110,7 +143,7 @@ def _is_same(one: Source, other: Source) -> bool:
 
 
 def _append_line(
-    text: Text, line: int, gutter: int, labels: Sequence[Label], diagnostic: Diagnostic, width: int
+    text: _Output, line: int, gutter: int, labels: Sequence[Label], diagnostic: Diagnostic, width: int
 ) -> None:
     source = labels[0].span.source
     view = _LineView(source.line(line), labels[0], max(width - gutter - 3, 20))
@@ -122,7 +155,7 @@ def _append_line(
         before, length = view.marks(label)
         text.append(f"{' ' * gutter} | ", _GUTTER_STYLE)
         marks = " " * before + ("^" if primary else "-") * length
-        said = f" {_printable(label.text)}" if label.text else ""
+        said = f" {printable(label.text)}" if label.text else ""
         text.append(f"{marks}{said}\n", _SEVERITY_STYLE[diagnostic.severity] if primary else _SECONDARY_STYLE)
 
 
@@ -173,7 +206,7 @@ def _shown(character: str) -> str:
     return "\N{REPLACEMENT CHARACTER}" if category in {"Cc", "Cf", "Cs", "Zl", "Zp"} else character
 
 
-def _printable(text: str) -> str:
+def printable(text: str) -> str:
     """Text from an input file or path without anything that could steer a terminal."""
     return "".join(c if c == "\n" else _shown(c) for c in text)
 
@@ -190,10 +223,11 @@ def _text_width(text: str) -> int:
     return sum(map(_cell_width, map(_shown, text)))
 
 
-def _wrapped(text: str, width: int, indent: int) -> str:
+def wrapped(text: str, width: int, indent: int = 0) -> str:
+    """The text in lines of `width` cells, the first without the indent; nothing in it steers a terminal."""
     lines = [
         textwrap.fill(line, max(width - indent, 20), break_long_words=False, break_on_hyphens=False)
-        for line in _printable(text).split("\n")
+        for line in printable(text).split("\n")
     ]
     return "\n".join(lines).replace("\n", "\n" + " " * indent)
 

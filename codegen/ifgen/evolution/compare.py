@@ -52,13 +52,19 @@ def compare(old: Version, new: Version) -> list[Difference]:
 
 
 def between(
-    old: Interface, new: Interface, old_registry: Registry, new_registry: Registry
+    old: Interface,
+    new: Interface,
+    old_registry: Registry,
+    new_registry: Registry,
+    *,
+    with_constants: bool = True,
 ) -> Iterator[Difference]:
     """Everything that differs between two interfaces, whatever their names, and in what they hold."""
     if old.folder != new.folder:
         return
     name = {old.type_name: new.type_name}
-    messages = Comparison(Layouts(old_registry), Layouts(new_registry), lambda known: name.get(known, known))
+    layouts = Layouts(old_registry), Layouts(new_registry)
+    messages = Comparison(*layouts, lambda known: name.get(known, known), with_constants)
     seen: set[str] = set()
 
     def nested(version: Versions, top: Message, before: tuple[Field, ...]) -> Iterator[Difference]:

@@ -28,11 +28,15 @@ from ifgen.evolution.python_values import Renamed, accepts, same_constant, same_
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Compares messages: the layouts of all types of both versions, and the names that types have now."""
+    """Compares messages: the layouts of all types of both versions, and the names that types have now.
+
+    Constants are left out unless `with_constants`: type descriptions have none.
+    """
 
     old: Layouts
     new: Layouts
     renamed: Renamed
+    with_constants: bool = True
 
     def edits(self, within: Versions) -> Iterator[MessageEdit]:
         """The differences between two versions of a message, those of nested messages left out."""
@@ -40,26 +44,27 @@ class Comparison:
             return
         edits = list(self._own_edits(within))
         yield from edits
-        if within.old.constants:
+        if within.old.constants and self.with_constants:
             from ifgen.evolution.enumerations import lost_members  # with the generator, for few messages
 
             yield from lost_members(within, edits)
 
     def _own_edits(self, within: Versions) -> Iterator[MessageEdit]:
+        after = _still_there_after(within)
         for old, new in self.pairs(within):
             if old is None and new is not None:
                 yield FieldAdded(within, new)
             elif new is None and old is not None:
-                yield FieldRemoved(within, old, _instead(within, old))
+                yield FieldRemoved(within, old, after.get(old.name))
             elif old is not None and new is not None:
                 if old.name != new.name:
                     yield FieldRenamed(within, old, new)
                 yield from self._field(within, old, new)
-        moved = _moved([field.name for field in within.old.fields], [f.name for f in within.new.fields])
-        for name in moved:
-            old, new = _named(within.old.fields, name), _named(within.new.fields, name)
-            yield FieldMoved(within, old, new)
-        yield from _constants(within)
+        before, now = _by_name(within.old.fields), _by_name(within.new.fields)
+        for name in _moved(list(before), list(now)):
+            yield FieldMoved(within, before[name], now[name])
+        if self.with_constants:
+            yield from _constants(within)
 
     def pairs(self, within: Versions) -> list[tuple[Field | None, Field | None]]:
         """The fields of both versions, side by side."""
@@ -135,11 +140,16 @@ def _by_gap(fields: Sequence[Field], in_other: Container[str]) -> dict[str, list
     return found
 
 
-def _instead(within: Versions, removed: Field) -> Field | None:
-    """The first field after a removed one that is still there."""
-    after = within.old.fields[within.old.fields.index(removed) + 1 :]
-    known = {field.name: field for field in within.new.fields}
-    return next((known[field.name] for field in after if field.name in known), None)
+def _still_there_after(within: Versions) -> dict[str, Field]:
+    """The first field after each field of the old version that the new one still has."""
+    known = _by_name(within.new.fields)
+    found: dict[str, Field] = {}
+    after: Field | None = None
+    for field in reversed(within.old.fields):
+        if after is not None:
+            found[field.name] = after
+        after = known.get(field.name, after)
+    return found
 
 
 def _moved(old: Sequence[str], new: Sequence[str]) -> list[str]:
@@ -161,8 +171,8 @@ def _moved(old: Sequence[str], new: Sequence[str]) -> list[str]:
     return [name for name in common if name not in stays]
 
 
-def _named(fields: Sequence[Field], name: str) -> Field:
-    return next(field for field in fields if field.name == name)
+def _by_name(fields: Sequence[Field]) -> dict[str, Field]:
+    return {field.name: field for field in fields}
 
 
 def _constants(within: Versions) -> Iterator[MessageEdit]:

@@ -1,0 +1,149 @@
+"""Definitions of a type: those that two nodes have, and those that are installed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Final
+
+from ifgen.config.settings import Settings, settle
+from ifgen.definition.described.reading import read
+from ifgen.definition.described.texts import read_sources
+from ifgen.definition.interfaces import Registry
+from ifgen.definition.resolve import resolve
+from ifgen.definition.type_description import Described, TypeHashes, described_types
+from ifgen.diagnostics import InputError, Source, UsageError
+from ifgen.evolution.explaining import places
+from ifgen.evolution.explaining.places import Place
+from ifgen.evolution.lock_text import NAME
+
+_MOST_TEXT: Final = 2**17
+"""Characters of the sources that a node may send."""
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """A definition of a type, with all that it holds."""
+
+    described: Described
+    registry: Registry
+
+
+def of_sources(side: Mapping[str, Any], type_name: str, node: str | None) -> Known | None:
+    """The definition in the sources of a side of a mismatch, if it has some and they fit its hash.
+
+    Its places are those of a `node`, if any.
+    """
+    definition: Mapping[str, Any] | None = side["definition"]
+    if not definition:
+        return None
+    try:
+        texts = [(str(name), str(encoding), str(text)) for name, encoding, text in definition["sources"]]
+        if sum(len(text) for _, _, text in texts) > _MOST_TEXT:
+            return None
+        found = read_sources(type_name, texts, Path(), node)
+    except (InputError, TypeError, ValueError):
+        return None
+    return None if found is None else _fitting(type_name, side["type_hash"], found[1])
+
+
+def of_document(side: Mapping[str, Any]) -> Known | None:
+    """The definition in the type description of a side, without places; None if it does not fit its hash."""
+    definition: Mapping[str, Any] | None = side["definition"]
+    try:
+        return Known(*read(definition["document"], side["type_hash"])) if definition else None
+    except InputError:
+        return None
+
+
+class Installed:
+    """What is installed, as far as it can be found in time: `until` is a moment of `time.monotonic`."""
+
+    def __init__(self, until: float) -> None:
+        self._until = until
+        self._found: dict[tuple[str, str], Known | None] = {}
+
+    def definition(self, type_name: str, type_hash: str) -> Known | None:
+        """The definition with a hash; None if there is none."""
+        key = type_name, type_hash
+        if key not in self._found:
+            self._found[key] = next(self._definitions(type_name, type_hash), None)
+        return self._found[key]
+
+    def located(self, source: Source) -> Source:
+        """The same source with the path of a file that has its text, if there is one."""
+        package, folder, file_name = source.path.parts[-3:]
+        for place in self._with_files:
+            if time.monotonic() > self._until:
+                break
+            try:
+                found = place(package)
+                file = found.interface(folder, Path(file_name).stem) if found is not None else None
+                if file is not None and file.read().text == source.text:
+                    return replace(source, path=file.path)
+            except (InputError, OSError):
+                continue
+        return source
+
+    @cached_property
+    def _settings(self) -> Settings:
+        try:
+            return settle()
+        except (UsageError, OSError):
+            return settle(isolated=True)
+
+    @cached_property
+    def _with_files(self) -> list[Place]:
+        return list(places.with_files(self._settings))
+
+    def _definitions(self, type_name: str, type_hash: str) -> Iterator[Known]:
+        every = [*self._with_files, *places.with_modules(self._settings)]
+        for place in every:
+            if time.monotonic() > self._until:
+                return
+            try:
+                registry = _resolved(type_name, place, every)
+            except (InputError, OSError):
+                continue
+            if registry is not None and (known := _fitting(type_name, type_hash, registry)):
+                yield known
+        yield from self._locked(type_name, type_hash)
+
+    def _locked(self, type_name: str, type_hash: str) -> Iterator[Known]:
+        from ifgen.evolution import lock_file  # its parser, which most searches do without
+
+        file = self._settings.file
+        path = (file.parent if file is not None else Path.cwd()) / NAME
+        try:
+            source = lock_file.source(path)
+            registry = lock_file.parse(source).registry if type_hash in source.text else None
+        except InputError:
+            return
+        if registry is not None and (known := _fitting(type_name, type_hash, registry)):
+            yield known
+
+
+def _fitting(type_name: str, type_hash: str, registry: Registry) -> Known | None:
+    """The type of this name and hash in a registry."""
+    start, _, name = type_name.rpartition("/")
+    for whole in places.wholes(name):
+        interface = registry.get(f"{start}/{whole}")
+        if interface is None:
+            continue
+        hashes = TypeHashes(registry)
+        named = (d for d in described_types(interface) if d.type_name == type_name)
+        return next((Known(d, registry) for d in named if hashes.of(d) == type_hash), None)
+    return None
+
+
+def _resolved(type_name: str, place: Place, every: Sequence[Place]) -> Registry | None:
+    """A type as it is in one place, with what it holds: from there too, or else from the others."""
+    package = place(type_name.partition("/")[0])
+    file = places.file_of(type_name, package) if package is not None else None
+    if package is None or file is None:
+        return None
+    asked = replace(package, files=(file,), partial=True, listed=None, nodes=())
+    return resolve([asked], places.SearchFrom(place, every))

@@ -1,0 +1,106 @@
+"""Explains a mismatch: two endpoints that met, and whose definitions of a type differ."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from ifgen.diagnostics import Diagnostic
+from ifgen.evolution.explaining.definitions import Installed, of_document, of_sources
+from ifgen.evolution.explaining.differences import Differences, differences
+
+PATIENCE: Final = 0.5
+"""Seconds for a search of what is installed: a node waits meanwhile."""
+
+_SHOWN: Final = 5
+_DIGITS: Final = len("RIHS01_") + 16
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """The parts of a warning: who, what differs, and what to do.
+
+    `changes` are the differences from the other definition to ours, `left_out` how many more there are.
+    `command` is what writes an adapter, if there can be one.
+    """
+
+    head: str
+    changes: tuple[Diagnostic, ...]
+    left_out: int
+    remarks: tuple[str, ...]
+    command: str | None
+
+
+def explained(mismatch: Mapping[str, Any]) -> Explanation:
+    """The explanation of a mismatch, a `Mismatch` of the runtime as a dictionary.
+
+    What its definitions say is not believed before it fits their hashes.
+    """
+    mine, theirs = mismatch["mine"], mismatch["theirs"]
+    installed = Installed(time.monotonic() + PATIENCE)
+    type_name = mismatch["type_name"]
+    old = (
+        of_sources(theirs, type_name, theirs["node"])
+        or of_document(theirs)
+        or installed.definition(type_name, theirs["type_hash"])
+    )
+    new = (
+        of_sources(mine, type_name, None)
+        or installed.definition(type_name, mine["type_hash"])
+        or of_document(mine)
+    )
+    found = differences(old, new, installed) if old and new else Differences()
+    remarks = [_unknown(side) for side, known in ((theirs, old), (mine, new)) if known is None]
+    remarks += filter(None, [found.remark])
+    remarks.append(_what_happens(mismatch))
+    shown, left_out = found.changes[:_SHOWN], len(found.changes[_SHOWN:])
+    return Explanation(head(mismatch), shown, left_out, tuple(remarks), _command(mismatch))
+
+
+def head(mismatch: Mapping[str, Any]) -> str:
+    """Who met whom, on what, with the hashes of both."""
+    mine, theirs = mismatch["mine"], mismatch["theirs"]
+    return (
+        f"{mismatch['kind']} '{mismatch['name']}': {theirs['node']} ({theirs['role']}) has another "
+        f"definition of {mismatch['type_name']} than {mine['node']} ({mine['role']}): "
+        f"{short(theirs['type_hash'])}..., not {short(mine['type_hash'])}..."
+    )
+
+
+def short(type_hash: str) -> str:
+    """As much of a hash as tells it from others."""
+    return type_hash[:_DIGITS]
+
+
+def _unknown(side: Mapping[str, Any]) -> str:
+    """Why a definition is not known, and how to get it."""
+    said = "says what does not fit its hash" if side["definition"] else "did not send its definition"
+    return (
+        f"what differs is unknown: {side['node']} {said}, and none with this hash is installed. To see it, "
+        "name the folder that has it in `include` of [tool.ifgen], or put the package that was generated "
+        "from it on PYTHONPATH"
+    )
+
+
+def _what_happens(mismatch: Mapping[str, Any]) -> str:
+    """What is done with messages."""
+    mine, theirs = mismatch["mine"]["node"], mismatch["theirs"]["node"]
+    what = "messages" if mismatch["kind"] == "topic" else "requests and responses"
+    match mismatch["policy"]:
+        case "adapt":
+            how = f"an adapter converts {what} between the two"
+        case "refuse" if mismatch["mine"]["role"] == "subscription":
+            how = f"nothing from '{mismatch['name']}' reaches {mine} while {theirs} publishes there"
+        case "refuse":
+            how = f"no {what} pass between the two"
+        case _:
+            how = f"{what} still flow as far as ROS lets them, and may be garbage"
+    return f"on_type_mismatch is {mismatch['policy']}: {how}"
+
+
+def _command(mismatch: Mapping[str, Any]) -> str | None:
+    if mismatch["policy"] == "adapt" or mismatch["kind"] == "action":
+        return None
+    return f"ifgen adapt {mismatch['type_name']} --from {short(mismatch['theirs']['type_hash'])}"
