@@ -19,7 +19,7 @@ try:
     import sensor_msgs_py.{module}
 except ImportError as error:
     print(f"{{type(error).__name__}} {{error.name}}: {{error}}")
-    assert error.__cause__ is None and error.__suppress_context__
+    assert error.__cause__ is error.__context__ is None
 """
     said = subprocess.check_output([sys.executable, "-c", program], text=True, timeout=60)
     assert said == (

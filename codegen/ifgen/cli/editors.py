@@ -60,7 +60,7 @@ def paths(format_: str, typings: Path | None, as_json: bool) -> int:
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
 @quiet_option
 def typings(directory: Path, check: bool, quiet: bool) -> int:
-    """Write stubs of rclpy for type checkers.
+    """Write stubs of rclpy and other libraries for type checkers.
 
     Writes to DIR (default: typings). The stubs fit the local rclpy and the real one, which has no types in
     ROS 2 Jazzy. Beside them come stubs of the messages of ROS, except packages that this project generates.

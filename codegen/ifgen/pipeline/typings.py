@@ -1,4 +1,4 @@
-"""Stubs that type checkers need beyond the project: rclpy, and the messages that come with ifgen."""
+"""Stubs that type checkers need beyond the project: of rclpy, messages and libraries that come with ifgen."""
 
 from __future__ import annotations
 
@@ -43,6 +43,8 @@ def _packages(directory: Path, output: Path) -> Iterator[OutputPackage]:
             yield OutputPackage(name, package.of_messages(generated / name))
         elif _is_generated(directory / name):
             yield OutputPackage(name, {})  # from before the project had its own
+    for folder in sorted(path.parent for path in resources.libraries().glob("*/__init__.py")):
+        yield OutputPackage(folder.name, package.of_library(folder))
 
 
 def _is_generated(folder: Path) -> bool:

@@ -23,7 +23,7 @@ __all__ = [
     "read_points_numpy",
 ]
 
-_Array: TypeAlias = "np.ndarray[Any, np.dtype[Any]]"
+_Array: TypeAlias = np.ndarray[Any, np.dtype[Any]]
 
 
 def read_points(
@@ -107,7 +107,7 @@ def create_cloud(
     """
     fields = list(fields)
     if isinstance(points, np.ndarray):
-        given = cast("_Array", points)
+        given = cast(_Array, points)
         values = (_of_columns if given.dtype.names is None else _checked)(given, fields, point_step)
     else:
         values = _of_rows(points, dtype_from_fields(fields, point_step))

@@ -54,6 +54,14 @@ def of_messages(folder: Path) -> Mapping[str, str]:
     }
 
 
+def of_library(folder: Path) -> Mapping[str, str]:
+    """The stubs of a package that nodes import besides rclpy, by path in its folder."""
+    return {
+        _stub_path(path, folder): _text(derive.stub(path.read_text(encoding="utf-8")))
+        for path in _modules(folder, folder.name).values()
+    }
+
+
 def _modules(folder: Path, package: str) -> dict[str, Path]:
     """The modules of a package, by name."""
     found: dict[str, Path] = {}
