@@ -43,6 +43,13 @@ def decode_any(data: bytes, cls: type[Any], *, bounded: bool = True, views: bool
         raise DeserializationError(cls.__name__ + problem.place, problem.text) from None
 
 
+def size_of(data: bytes, cls: type[Any]) -> int:
+    """The number of bytes that a message takes of those it was read from, its header included."""
+    reader = Reader(data, _BYTE_ORDERS[data[:2]], bounded=False)
+    reader.message(cls)
+    return reader.position
+
+
 class Reader:
     """Reads values at a position that only grows; `order` is `<` or `>`. Raises Problem."""
 

@@ -137,31 +137,25 @@ def _create_handlers(
     ]
 
 
-# Both say `warn`, not `warning`, as upstream does: tests put loggers of their own in place of rclpy's.
-
-
 def _warn_of_qos(logger: _RcutilsLogger, text: str) -> _Callback:
     """Make the callback that logs an incompatible counterpart where the user did not ask for the event."""
 
     def warn(event: Any) -> None:
+        # Not `warning`, as upstream: tests put loggers of their own in place of rclpy's.
         logger.warn(text + qos_policy_name_from_kind(event.last_policy_kind))
 
     return warn
 
 
-def _warn_of_type(logger: _RcutilsLogger, topic_name: str) -> _Callback:
-    """Make the callback that logs a counterpart of another type where the user did not ask for the event."""
-
-    def warn(_: Any) -> None:
-        logger.warn(f"Incompatible type on topic '{topic_name}', no messages will be sent to it.")
-
-    return warn
+def _hear_of_type(_: Any) -> None:
+    """Do nothing where the user did not ask for the event: the warning that caused it has said more."""
 
 
 class SubscriptionEventCallbacks:
     """Callbacks for events of a subscription.
 
-    Without a callback for incompatible QoS or an incompatible type, `use_default_callbacks` logs a warning.
+    Without a callback for incompatible QoS, `use_default_callbacks` logs a warning. For incompatible types,
+    there is one anyway, with the reason.
     """
 
     def __init__(
@@ -196,7 +190,7 @@ class SubscriptionEventCallbacks:
                 f"New publisher discovered on topic '{topic_name}', offering incompatible QoS. "
                 "No messages will be received from it. Last incompatible policy: ",
             )
-            incompatible_type = incompatible_type or _warn_of_type(logger, topic_name)
+            incompatible_type = incompatible_type or _hear_of_type
         event = QoSSubscriptionEventType
         return _create_handlers(
             callback_group,
@@ -215,7 +209,8 @@ class SubscriptionEventCallbacks:
 class PublisherEventCallbacks:
     """Callbacks for events of a publisher.
 
-    Without a callback for incompatible QoS or an incompatible type, `use_default_callbacks` logs a warning.
+    Without a callback for incompatible QoS, `use_default_callbacks` logs a warning. For incompatible types,
+    there is one anyway, with the reason.
     """
 
     def __init__(
@@ -248,7 +243,7 @@ class PublisherEventCallbacks:
                 f"New subscription discovered on topic '{topic_name}', requesting incompatible QoS. "
                 "No messages will be sent to it. Last incompatible policy: ",
             )
-            incompatible_type = incompatible_type or _warn_of_type(logger, topic_name)
+            incompatible_type = incompatible_type or _hear_of_type
         event = QoSPublisherEventType
         return _create_handlers(
             callback_group,

@@ -23,6 +23,7 @@ from rclpy._parameters import rules
 from rclpy._parameters.changes import keep_or_remove
 from rclpy._parameters.declarations import read_declaration
 from rclpy._parameters.listing import check_strings, list_names
+from rclpy._parameters.mismatch import ON_TYPE_MISMATCH, follow_policy
 from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.client import Client
 from rclpy.clock import Clock, ROSClock
@@ -249,6 +250,7 @@ class Node:
         with self.handle:
             self._parameter_overrides = self.handle.get_parameters(Parameter)
         self._parameter_overrides.update({override.name: override for override in parameter_overrides or ()})
+        follow_policy(self)
         self._clock = ROSClock()
         if automatically_declare_parameters_from_overrides:
             given = [
@@ -448,6 +450,8 @@ class Node:
             raise ParameterImmutableException(name)
         del self._parameters[name]
         del self._descriptors[name]
+        if name == ON_TYPE_MISMATCH:
+            follow_policy(self)
 
     def has_parameter(self, name: str) -> bool:
         """Whether the parameter is declared."""
@@ -614,6 +618,8 @@ class Node:
         for parameter in parameter_list:
             is_kept = allow_not_set_type or parameter.type_ is not Parameter.Type.NOT_SET
             keep_or_remove(parameter, self._parameters, self._descriptors, descriptors, event, keep=is_kept)
+        if any(parameter.name == ON_TYPE_MISMATCH for parameter in parameter_list):
+            follow_policy(self)
         event.stamp = self._clock.now().to_msg()
         if self._parameter_event_publisher is not None:
             self._parameter_event_publisher.publish(event)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from rmw_local.status import IncompatibleQosStatus, IncompatibleTypeStatus, MatchedStatus
 
 if TYPE_CHECKING:
+    from rmw_local.encounter import Encounter
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
     from rmw_local.qos import QosProfile
@@ -14,6 +15,9 @@ if TYPE_CHECKING:
 
 class Endpoint:
     """One end of a topic. Its QoS profile is resolved: no policy is "system default" any more."""
+
+    role: ClassVar[str]
+    encounters: tuple[Encounter, ...] = ()  # with other definitions, until they are told of
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         self.node = node
@@ -25,5 +29,13 @@ class Endpoint:
         self.matched = MatchedStatus()
         self.incompatible_qos = IncompatibleQosStatus()
         self.incompatible_type = IncompatibleTypeStatus()
-        # The reasons why earlier counterparts use another definition of the type, for the creator to log.
-        self.type_conflicts: list[str] = []
+
+    @property
+    def kind(self) -> MessageType:
+        """Its type, as services and topics both have one."""
+        return self.message_type
+
+    @property
+    def name(self) -> str:
+        """The name of its topic."""
+        return self.topic

@@ -11,6 +11,7 @@ import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from rmw_local import observer
@@ -23,6 +24,8 @@ from rmw_local.topic import Topic
 from rmw_local.writer import DurableWriter, Writer
 
 if TYPE_CHECKING:
+    from ifgen_runtime.mismatch.told import Told
+
     from rmw_local.message import MessageType, ServiceType
     from rmw_local.qos import QosProfile
 
@@ -103,6 +106,13 @@ class Participant:
         self._entities = itertools.count(1)
         self._types: dict[str, tuple[str, int]] = {}
 
+    @cached_property
+    def told(self) -> Told:
+        """The number of warnings about definitions that differ."""
+        from ifgen_runtime.mismatch.told import Told  # late: definitions hardly ever differ
+
+        return Told()
+
     def next_gid(self) -> bytes:
         """Return a new 16-byte gid."""
         return self._prefix + next(self._entities).to_bytes(4, "big")
@@ -157,6 +167,7 @@ class GraphNode:
         self.namespace = namespace
         self.enclave = enclave
         self.closed = False
+        self.on_type_mismatch = "warn"  # what to do if another endpoint has another definition of a type
 
     @property
     def full_name(self) -> str:
@@ -175,6 +186,7 @@ class GraphNode:
             writer = make(self, message_type, topic, resolved)
             changed = place.add_writer(writer)
         self._announce(writer, changed)
+        self._tell_of_encounters(writer)
         return writer
 
     def create_reader(self, message_type: MessageType, topic: str, qos: QosProfile) -> Reader:
@@ -189,6 +201,7 @@ class GraphNode:
             reader = make(self, message_type, topic, resolved)
             changed = place.add_reader(reader)
         self._announce(reader, changed)
+        self._tell_of_encounters(reader)
         return reader
 
     def create_client(self, service_type: ServiceType, name: str, qos: QosProfile) -> ServiceClient:
@@ -257,6 +270,7 @@ class GraphNode:
             self.participant.claim(request_topic(endpoint.name), endpoint.service_type.name)
             domain.service(endpoint.name).add(endpoint)
         self._announce(endpoint, [])
+        self._tell_of_encounters(endpoint)
 
     def _leave_topic(self, name: str) -> None:
         topics = self.participant.domain.topics
@@ -267,6 +281,14 @@ class GraphNode:
     def _announce(self, entity: object, changed: Iterable[ReadySource]) -> None:
         _record_opened(entity)
         self._notify(changed)
+
+    def _tell_of_encounters(self, newcomer: Writer | Reader | ServiceEndpoint) -> None:
+        if not newcomer.encounters:
+            return
+        from rmw_local.telling import tell_of  # late: definitions hardly ever differ
+
+        encounters, newcomer.encounters = newcomer.encounters, ()
+        tell_of(encounters)
 
     def _renounce(self, entity: object, changed: Iterable[ReadySource]) -> None:
         watching = observer.current()

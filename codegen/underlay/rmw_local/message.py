@@ -20,7 +20,6 @@ __all__ = [
     "SerializationError",
     "ServiceType",
     "as_raised",
-    "difference",
     "is_message_class",
     "is_service_class",
     "message_type",
@@ -52,6 +51,7 @@ class MessageType:
         else:
             self.serialize, self.deserialize = serialize, partial(deserialize, cls=cls)
         self.drops = Drops(self.name)
+        self.action: type[Any] | None = None  # that this is a part of
 
     @cached_property
     def deserialize_views(self) -> Callable[[bytes], Any]:
@@ -82,6 +82,7 @@ class ServiceType:
         self.name = type_name(cls)
         self.request = message_type(cls.Request)
         self.response = message_type(cls.Response)
+        self.action: type[Any] | None = None  # that this is a part of
 
     @cached_property
     def type_hash(self) -> str:
@@ -128,37 +129,3 @@ def type_name(cls: type[Any]) -> str:
     """Return `pkg/kind/Name` of a message, service or action class."""
     package, kind, *_ = cls.__module__.split(".")
     return f"{package}/{kind}/{cls.__name__}"
-
-
-def difference(offered: MessageType, requested: MessageType) -> str | None:
-    """Say how two definitions of one type differ, naming the field; None if they are the same."""
-    if offered.cls is requested.cls or offered.type_hash == requested.type_hash:
-        return None
-    where = _first_difference(offered.cls, requested.cls, set()) or "constants or defaults may differ"
-    return (
-        f"the publisher and the subscription use different definitions of {offered.name}: {where} "
-        f"(type hashes {offered.type_hash or 'unknown'} and {requested.type_hash or 'unknown'})"
-    )
-
-
-def _first_difference(one: type[Any], other: type[Any], seen: set[type[Any]]) -> str | None:
-    """Describe the first field, in declaration order and depth first, in which two classes differ."""
-    from ifgen_runtime.field_types import fields_of  # late: only for this error
-
-    seen.add(one)
-    mine, theirs = one.get_fields_and_field_types(), other.get_fields_and_field_types()
-    for (name, kind), (their_name, their_kind) in zip(mine.items(), theirs.items(), strict=False):
-        if name != their_name:
-            return f"field '{name}' of one is '{their_name}' in the other"
-        if kind != their_kind:
-            return f"field '{name}' is {kind} in one and {their_kind} in the other"
-    if len(mine) != len(theirs):
-        longer, shorter = sorted((mine, theirs), key=len, reverse=True)
-        return f"only one of them has the field '{list(longer)[len(shorter)]}'"
-    for field, their_field in zip(fields_of(one), fields_of(other), strict=True):
-        nested, their_nested = field.type, their_field.type
-        if isinstance(nested, type) and isinstance(their_nested, type) and nested not in seen:
-            inside = _first_difference(nested, their_nested, seen)
-            if inside:
-                return f"in field '{field.name}' ({type_name(nested)}), {inside}"
-    return None

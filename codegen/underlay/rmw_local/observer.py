@@ -20,9 +20,6 @@ class Observer(Protocol):
     def incompatible_qos(self, topic: str, policy_kind: int, writer_node: str, reader_node: str) -> None:
         """Two endpoints of one topic cannot talk; `policy_kind` is rmw's bit for the reason."""
 
-    def incompatible_type(self, topic: str, explanation: str) -> None:
-        """Two endpoints of one topic use different types, or different definitions of one type."""
-
     def opened(self, entity: object) -> None:
         """A node or an endpoint was created."""
 

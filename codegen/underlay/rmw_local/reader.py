@@ -14,16 +14,31 @@ from rmw_local.status import DeadlineStatus, LivelinessChangedStatus
 if TYPE_CHECKING:
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
+    from rmw_local.origin import Origin
     from rmw_local.qos import QosProfile
 
 # One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages).
 # All readers share it. Bytes rather than objects: an unread message is never decoded, and every reader gets
-# its own object when it takes the message.
-Sample = tuple[bytes, int, int]
+# its own object when it takes the message. Bytes that may be of another definition have an
+# Origin as well.
+Sample = tuple[bytes, int, int] | tuple[bytes, int, int, "Origin"]
+
+
+class _Closed(deque[Sample]):
+    """Looks empty, and keeps elsewhere what is appended: no check is needed where messages come and go."""
+
+    def __init__(self, held: deque[Sample]) -> None:
+        super().__init__()
+        self.held = held
+
+    def append(self, sample: Sample) -> None:
+        self.held.append(sample)
 
 
 class Reader(ReadySource, Endpoint):
     """A reader of one topic. Filling and emptying the queue takes no lock: a bounded deque is atomic."""
+
+    role = "subscription"
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         ReadySource.__init__(self)
@@ -50,7 +65,7 @@ class Reader(ReadySource, Endpoint):
 
     def store(self, sample: Sample) -> None:
         """Queue a message; `announce` has to follow when the caller holds no lock any more."""
-        if self._observer is not None and len(self._queue) == self._queue.maxlen:
+        if self._observer is not None and self.unread == self.qos.queue_length:
             self._observer.undelivered(self.topic, 1, "overwritten before it was read")
         self._queue.append(sample)
 
@@ -70,7 +85,23 @@ class Reader(ReadySource, Endpoint):
     @property
     def unread(self) -> int:
         """The number of waiting messages."""
-        return len(self._queue)
+        queue = self._queue
+        return len(queue.held if isinstance(queue, _Closed) else queue)
+
+    @property
+    def end(self) -> Reader:
+        """Itself: what stands for a reader has it there."""
+        return self
+
+    def withhold(self) -> None:
+        """Be empty from now on, whatever comes. Called with the domain's lock held, as is `release`."""
+        if not isinstance(self._queue, _Closed):
+            self._queue = _Closed(self._queue)
+
+    def release(self) -> None:
+        """Have what was withheld: as many messages as ever wait, the newest ones."""
+        if isinstance(self._queue, _Closed):
+            self._queue = self._queue.held
 
 
 class LifespanReader(Reader):

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmw_local import observer
-from rmw_local.message import difference
 from rmw_local.qos import mismatch
 
 if TYPE_CHECKING:
@@ -25,6 +24,7 @@ class Topic:
         self.name = name
         self.writers: list[Writer] = []
         self.readers: list[Reader] = []
+        self._refused: list[tuple[Writer, Reader]] = []  # because their definitions differ
 
     def add_writer(self, writer: Writer) -> list[ReadySource]:
         """Let a writer join."""
@@ -48,8 +48,10 @@ class Topic:
         """Let a writer leave."""
         self.writers.remove(writer)
         changed: list[ReadySource] = []
-        for reader in writer.readers:
-            changed += self._part(writer, reader, stays=reader)
+        for receiver in writer.readers:
+            changed += self._part(writer, receiver.end, stays=receiver.end)
+        if self._refused:
+            changed += self._readmit(writer)
         return changed
 
     def remove_reader(self, reader: Reader) -> list[ReadySource]:
@@ -57,8 +59,10 @@ class Topic:
         self.readers.remove(reader)
         changed: list[ReadySource] = []
         for writer in self.writers:
-            if reader in writer.readers:
+            if writer.reaches(reader):
                 changed += self._part(writer, reader, stays=writer)
+        if self._refused:
+            self._refused = [pair for pair in self._refused if pair[1] is not reader]
         return changed
 
     def is_empty(self) -> bool:
@@ -70,31 +74,44 @@ class Topic:
             return []  # DDS keeps topics of different types apart without a word
         if writer.qos.avoid_ros_namespace_conventions != reader.qos.avoid_ros_namespace_conventions:
             return []  # in DDS one of them has a prefix to its name
-        explanation = difference(writer.message_type, reader.message_type)
-        if explanation is not None:
-            newcomer.type_conflicts.append(explanation)
-            return _refuse_type(writer, reader, explanation)
         policy_kind = mismatch(writer.qos, reader.qos)
         if policy_kind is not None:
             return _refuse_qos(writer, reader, policy_kind)
-        writer.connect(reader)
+        origin = None
+        if writer.message_type.type_hash != reader.message_type.type_hash:
+            from rmw_local.encounter import meet_on_topic  # late: definitions hardly ever differ
+
+            encounter, origin = meet_on_topic(writer, reader)
+            newcomer.encounters = (*newcomer.encounters, encounter)
+            if origin is None:
+                return self._refuse(writer, reader)
+        writer.connect(reader, origin)
         writer.matched.joined()
         reader.matched.joined()
         return [writer.matched, reader.matched, reader.liveliness_changed]
+
+    def _refuse(self, writer: Writer, reader: Reader) -> list[ReadySource]:
+        """Keep a reader from everything on this topic, until the writer leaves."""
+        self._refused.append((writer, reader))
+        reader.withhold()
+        writer.incompatible_type.add()
+        reader.incompatible_type.add()
+        return [writer.incompatible_type, reader.incompatible_type]
+
+    def _readmit(self, writer: Writer) -> list[ReadySource]:
+        """Release the readers that refused nobody else than this writer."""
+        waiting = [reader for refused, reader in self._refused if refused is writer]
+        self._refused = [pair for pair in self._refused if pair[0] is not writer]
+        still_closed = {reader for _, reader in self._refused}
+        free = [reader for reader in waiting if reader not in still_closed]
+        for reader in free:
+            reader.release()
+        return [reader for reader in free if reader.is_ready()]
 
     def _part(self, writer: Writer, reader: Reader, *, stays: Endpoint) -> list[ReadySource]:
         writer.disconnect(reader)
         stays.matched.left()  # an endpoint is not notified of its own end
         return [stays.matched, reader.liveliness_changed]
-
-
-def _refuse_type(writer: Writer, reader: Reader, explanation: str) -> list[ReadySource]:
-    watching = observer.current()
-    if watching is not None:
-        watching.incompatible_type(writer.topic, explanation)
-    writer.incompatible_type.add()
-    reader.incompatible_type.add()
-    return [writer.incompatible_type, reader.incompatible_type]
 
 
 def _refuse_qos(writer: Writer, reader: Reader, policy_kind: int) -> list[ReadySource]:

@@ -11,12 +11,14 @@ from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
 from rmw_local.liveliness import Lease
 from rmw_local.message import SerializationError, as_raised
+from rmw_local.passage import Marking
 from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC
 from rmw_local.status import DeadlineStatus, LivelinessLostStatus
 
 if TYPE_CHECKING:
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
+    from rmw_local.origin import Origin
     from rmw_local.qos import QosProfile
     from rmw_local.reader import Reader, Sample
 
@@ -25,12 +27,16 @@ class Writer(Endpoint):
     """A volatile writer: it keeps nothing, so publishing needs no lock.
 
     `readers` is replaced, never changed; a message that is being published while a reader joins or leaves may
-    reach it or not, as on any network.
+    reach it or not, as on any network. Some of them are stand-ins (`rmw_local.passage`).
     """
+
+    role = "publisher"
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         super().__init__(node, message_type, topic, qos)
-        self.readers: tuple[Reader, ...] = ()
+        self.readers: tuple[Reader | Marking, ...] = ()
+        self._marking: dict[Reader, Marking] = {}  # the stand-ins; replaced, never changed
+        self._own_origin: Origin | None = None  # once it publishes bytes
         self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
         self._manual = qos.liveliness == MANUAL_BY_TOPIC
         self.liveliness_lost = LivelinessLostStatus(qos.liveliness_lease_duration, manual=self._manual)
@@ -49,7 +55,7 @@ class Writer(Endpoint):
         self.publish_bytes(data)
 
     def publish_bytes(self, data: bytes) -> None:
-        """Deliver a serialised message as it is; readers check its contents."""
+        """Deliver a serialised message of the writer's class."""
         if self._timed:
             self._note_publication()
         readers = self.readers
@@ -59,29 +65,62 @@ class Writer(Endpoint):
         if self._observer is not None and not readers:
             self._observer.undelivered(self.topic, 1, "published while no subscription was matched")
 
+    def publish_raw(self, data: bytes) -> None:
+        """Deliver bytes of unknown contents; from now on readers look what is in those of this writer."""
+        if self._own_origin is None:
+            self._doubt()
+        self.publish_bytes(data)
+
     def assert_liveliness(self) -> None:
         """Say that the writer lives, for one more lease."""
         if self._manual:
             for lease in (self.liveliness_lost.lease, *self._leases.values()):
                 lease.sign()
 
-    def connect(self, reader: Reader) -> None:
-        """Deliver to one more reader. Called with the domain's lock held."""
+    def connect(self, reader: Reader, origin: Origin | None = None) -> None:
+        """Deliver to one more reader, marked with an origin. Called with the domain's lock held."""
         patience = reader.qos.liveliness_lease_duration
         if patience < INFINITE:
             lease = Lease(reader.liveliness_changed, patience, manual=self._manual)
             reader.liveliness_changed.watch(lease)
             self._leases = {**self._leases, reader: lease}
-        self.readers = (*self.readers, reader)
+        self.readers = (*self.readers, self._receiver(reader, origin))
+
+    def _receiver(self, reader: Reader, origin: Origin | None) -> Reader | Marking:
+        """The reader, or what stands for it."""
+        origin = origin or self._own_origin
+        if origin is None:
+            return reader
+        known = self._marking.get(reader)
+        if known is None:
+            known = Marking(reader, origin)
+            self._marking = {**self._marking, reader: known}
+        return known
+
+    def reaches(self, reader: Reader) -> bool:
+        """Whether it delivers to a reader. Called with the domain's lock held."""
+        return self._marking.get(reader, reader) in self.readers
 
     def disconnect(self, reader: Reader) -> None:
         """Deliver to a reader no longer. Called with the domain's lock held."""
-        self.readers = tuple(known for known in self.readers if known is not reader)
+        receiver = self._marking.get(reader, reader)
+        self.readers = tuple(known for known in self.readers if known is not receiver)
+        if receiver is not reader:
+            self._marking = {each: known for each, known in self._marking.items() if each is not reader}
         lease = self._leases.get(reader)
         if lease is not None:
             self._leases = {known: each for known, each in self._leases.items() if known is not reader}
             reader.liveliness_changed.forget(lease)
             lease.end()
+
+    def _doubt(self) -> None:
+        """Mark all messages, to readers that there are and to those to come."""
+        from rmw_local.origin import Origin  # late: few programs publish bytes
+
+        with self.node.participant.domain.lock:
+            if self._own_origin is None:
+                self._own_origin = Origin(f"topic '{self.topic}'", self.node, is_raw=True)
+                self.readers = tuple(self._receiver(known.end, None) for known in self.readers)
 
     def _note_publication(self) -> None:
         if self.deadline is not None:
@@ -114,12 +153,13 @@ class DurableWriter(Writer):
         for reader in readers:
             reader.announce()
 
-    def connect(self, reader: Reader) -> None:
+    def connect(self, reader: Reader, origin: Origin | None = None) -> None:
         """Replay what is kept to a transient local reader, then deliver to it as well."""
         with self._lock:
             if reader.qos.durability == self.qos.durability:
                 born_after = timing.time_ns() - self.qos.lifespan
+                receiver = self._receiver(reader, origin)
                 for sample in self._history:
                     if sample[1] > born_after:
-                        reader.store(sample)
-            super().connect(reader)
+                        receiver.store(sample)
+            super().connect(reader, origin)

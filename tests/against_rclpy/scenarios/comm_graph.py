@@ -91,6 +91,11 @@ def names(node: Node, other: Node) -> None:
         [row for row in rcl.rclpy_get_topic_names_and_types(node.handle, True) if "discovery" not in row[0]]
     )
     print(rcl.rclpy_get_service_names_and_types(node.handle))
+    for topic in ("rq/ns/setRequest", "rr/ns/setReply", "rt/abs/x", "/ns/set"):
+        for query in (node.get_publishers_info_by_topic, node.get_subscriptions_info_by_topic):
+            print(topic, query.__name__)
+            for info in query(topic, no_mangle=True):
+                print(info.node_name, info.topic_type, info.topic_type_hash, info.qos_profile)
     for count, names in (
         (node.count_publishers, ("chatter", "/ns/chatter", "/abs/x", "nobody", "a b")),
         (node.count_subscribers, ("chatter", "/ns/chatter", "/abs/x", "nobody", "a b")),

@@ -296,37 +296,6 @@ def other_definition(cls: type[Any], *changes: tuple[str, str]) -> type[Any]:
     return getattr(module, cls.__name__)  # type: ignore[no-any-return]
 
 
-def test_different_type_hashes_are_explained(capfd: pytest.CaptureFixture[str]) -> None:
-    """No message passes; both sides count an incompatible type; the log names the field that differs."""
-    theirs = other_definition(Point, ('"y": "double"', '"y": "float"'))
-    node = Node("n")
-    publisher = rcl.Publisher(node.handle, Point, "p", profile())
-    subscription = rcl.Subscription(node.handle, theirs, "p", profile())
-    publisher.publish(Point())
-    assert taken(subscription) == []
-    assert publisher.get_subscription_count() == 0
-    kinds = rcl.rcl_publisher_event_type_t.RCL_PUBLISHER_INCOMPATIBLE_TYPE
-    assert event(publisher, kinds).take_event().total_count_change == 1
-    log = capfd.readouterr().err
-    assert "[WARN]" in log
-    assert "No messages will pass on topic '/p'" in log
-    assert "geometry_msgs/msg/Point: field 'y' is double in one and float in the other" in log
-    assert Point.__type_hash__ in log
-
-
-def test_the_difference_is_found_in_nested_types(capfd: pytest.CaptureFixture[str]) -> None:
-    """The path leads to the nested field; a missing last field is named too."""
-    nested = other_definition(Point, ('        "z": "double",\n', ""), ('        "z",\n', ""))
-    theirs = other_definition(Pose)
-    theirs.__nested__ = (nested, *theirs.__nested__[1:])
-    node = Node("n")
-    subscription = rcl.Subscription(node.handle, theirs, "p", profile())
-    publisher = rcl.Publisher(node.handle, Pose, "p", profile())
-    assert subscription.get_publisher_count() == publisher.get_subscription_count() == 0
-    log = capfd.readouterr().err
-    assert "in field 'position' (geometry_msgs/msg/Point), only one of them has the field 'z'" in log
-
-
 def test_the_same_definition_in_two_classes_talks() -> None:
     """A module that was loaded twice is one type: each side gets objects of its own class."""
     theirs = other_definition(Point)
@@ -357,10 +326,6 @@ class Notes:
     def incompatible_qos(self, topic: str, policy_kind: int, writer_node: str, reader_node: str) -> None:
         """Record endpoints whose QoS does not match."""
         self.lines.append(("qos", topic, policy_kind, writer_node, reader_node))
-
-    def incompatible_type(self, topic: str, explanation: str) -> None:
-        """Record endpoints whose types differ."""
-        self.lines.append(("type", topic, explanation.split(":", maxsplit=1)[0]))
 
     def opened(self, entity: object) -> None:
         """Note an entity as open."""
@@ -564,9 +529,9 @@ def test_dropped_payloads_are_told_once_a_second_with_their_number(
     words = node.create_publisher(String, "words", 10).handle
     for milliseconds in (0, 0, 900, 100, 1900, 100):
         clock.now += milliseconds * 10**6
-        words.publish_raw(b"\0\1\0\0\xff\xff")
+        words.publish_serialized(b"\0\1\0\0\xff\xff")
         assert taken(subscription.handle) == []
-    node.create_publisher(Float32, "number", 10).handle.publish_raw(b"")
+    node.create_publisher(Float32, "number", 10).handle.publish_serialized(b"")
     assert taken(number.handle) == []
     told = "rmw_local: dropped {} of type {} (does a publisher have another definition of it?)"
     assert capsys.readouterr().err.splitlines() == [

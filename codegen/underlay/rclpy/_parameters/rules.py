@@ -8,6 +8,7 @@ from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 
+from rclpy._parameters.mismatch import policy_fault
 from rclpy.parameter import Parameter
 
 RELATIVE_TOLERANCE = 1e-6
@@ -47,7 +48,7 @@ def check(
             descriptor.type = parameter.type_.value
         else:
             fault = type_fault(parameter, descriptor, declared=parameter.name in declared)
-        if fault := fault or _range_fault(parameter, descriptor, tolerance):
+        if fault := fault or _range_fault(parameter, descriptor, tolerance) or policy_fault(parameter):
             return refused(fault)
     return accepted()
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from rmw_local.message import message_type, service_type
+
 from .client import Client
 from .destroyable import Destroyable
 from .errors import RCLError
@@ -42,6 +44,9 @@ class ActionEntity(Destroyable):
         self._must_be_usable(node, action_type, action_name)
         self._node = node
         self._name = action_name
+        for part in (action_type.Impl.SendGoalService, action_type.Impl.GetResultService):
+            service_type(part).action = action_type
+        message_type(action_type.Impl.FeedbackMessage).action = action_type
         self._parts: list[_Part] = []
         self._waited_for: list[tuple[str, Any]] = []  # (kind, handle) in the order of what `is_ready` returns
         self._indices: list[

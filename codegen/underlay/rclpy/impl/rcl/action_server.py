@@ -200,7 +200,7 @@ class ActionServer(ActionEntity):
         self._must_work("Failed get goal status array")  # sic
         # Under the lock, or an older array could overtake a newer one and stay the last for ever.
         with self._lock:
-            self._status.publish_raw(self._statuses.to_bytes())
+            self._status.publish_serialized(self._statuses.to_bytes())
 
     def _must_work(self, failure: str) -> None:
         if self._destroyed or not self._node.context.valid:

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rmw_local.graph import TypeConflictError
-from rmw_local.message import DecodeError, service_type
+from rmw_local.message import service_type
 from rmw_local.qos import unknown_policy
 
 from .clock import Clock
@@ -70,13 +70,10 @@ class Client(SourceHandle, EndpointHandle):
         letter = self._client.take()
         if letter is None:
             return None, None
-        data, stamp, gid, number = letter
-        kind = self._client.service_type.response
-        try:
-            response = kind.deserialize(data)
-        except DecodeError:
-            kind.drops.add()
+        response = self._client.read(letter)
+        if response is None:
             return None, None
+        _, stamp, gid, number, *_ = letter
         if self._introspection is not None:
             self._introspection.record(RESPONSE_RECEIVED, gid, number, response=response)
         return rmw_service_info_t(stamp, stamp, rmw_request_id_t(number, gid)), response

@@ -12,8 +12,6 @@ from .errors import RCLError
 from .names import rclpy_get_validation_error_for_full_topic_name
 
 if TYPE_CHECKING:
-    from rmw_local.endpoint import Endpoint
-
     from .node import Node
 
 # In upstream's words, which differ.
@@ -112,15 +110,3 @@ def resolve(node: object, name: str, kind: str, *, is_service: bool = False) -> 
     except ValueError as error:
         reason = str(error)
     raise ValueError(_INVALID_NAME[kind].format(kind=kind, name=name, reason=reason))
-
-
-def warn_of_type_conflicts(node: Node, endpoint: Endpoint) -> None:
-    """Log why endpoints that were there before are not matched: their definition of the type differs."""
-    if not endpoint.type_conflicts:
-        return
-    from .logging import RCUTILS_LOG_SEVERITY, rclpy_logging_rcutils_log  # late: hardly ever needed
-
-    for explanation in endpoint.type_conflicts:
-        text = f"No messages will pass on topic '{endpoint.topic}': {explanation}"
-        severity = RCUTILS_LOG_SEVERITY.RCUTILS_LOG_SEVERITY_WARN
-        rclpy_logging_rcutils_log(severity, node.logger_name(), text, "", "", 0)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rmw_local.endpoint import Endpoint
 from rmw_local.graph import Domain
-from rmw_local.qos import HISTORY_UNKNOWN
+from rmw_local.message import MessageType
+from rmw_local.qos import HISTORY_UNKNOWN, QosProfile
 from rmw_local.service import ServiceEndpoint
 
 from .errors import NodeNameNonExistentError, RCLError
@@ -179,7 +180,8 @@ def rclpy_get_client_names_and_types_by_node(
 def rclpy_get_publishers_info_by_topic(node: Node, topic_name: str, no_mangle: bool) -> list[dict[str, Any]]:
     """Return the keyword arguments of a TopicEndpointInfo for each publisher of a full topic name."""
     graph = _Snapshot(node, "Failed to get information by topic for publishers")
-    return _infos(graph.writers, topic_name, no_mangle, _PUBLISHER)
+    ends = _dds_senders(graph) if no_mangle else _ends(graph.writers)
+    return [_info(end, _PUBLISHER) for end in ends if end.name == topic_name]
 
 
 def rclpy_get_subscriptions_info_by_topic(
@@ -187,32 +189,54 @@ def rclpy_get_subscriptions_info_by_topic(
 ) -> list[dict[str, Any]]:
     """Return the keyword arguments of a TopicEndpointInfo for each subscription of a full topic name."""
     graph = _Snapshot(node, "Failed to get information by topic for subscriptions")
-    return _infos(graph.readers, topic_name, no_mangle, _SUBSCRIPTION)
+    ends = _dds_takers(graph) if no_mangle else _ends(graph.readers)
+    return [_info(end, _SUBSCRIPTION) for end in ends if end.name == topic_name]
 
 
-def _infos(
-    endpoints: Iterable[Endpoint], topic_name: str, no_mangle: bool, endpoint_type: int
-) -> list[dict[str, Any]]:
-    if no_mangle:
-        names = ((name, type_name, each) for each in endpoints for name, type_name in _dds_topics([each]))
-    else:
-        names = ((each.topic, each.message_type.name, each) for each in endpoints)
-    return [
-        _info(endpoint, type_name, endpoint_type) for name, type_name, endpoint in names if name == topic_name
-    ]
+class _End(NamedTuple):
+    """One end of a topic, or of a DDS topic; services have two of these."""
+
+    name: str
+    type_name: str
+    endpoint: Endpoint | ServiceEndpoint
+    kind: MessageType
+    qos: QosProfile
 
 
-def _info(endpoint: Endpoint, type_name: str, endpoint_type: int) -> dict[str, Any]:
-    version, value = endpoint.message_type.type_hash_value
+def _ends(endpoints: Iterable[Endpoint]) -> Iterator[_End]:
+    for each in endpoints:
+        yield _End(each.topic, each.message_type.name, each, each.message_type, each.qos)
+
+
+def _dds_senders(graph: _Snapshot) -> Iterator[_End]:
+    for writer in graph.writers:
+        yield from (_End(*pair, writer, writer.message_type, writer.qos) for pair in _dds_topics([writer]))
+    for client in graph.clients:
+        yield from (_End(*pair, client, client.sends, client.qos.writer) for pair in _dds_requests([client]))
+    for server in graph.servers:
+        yield from (_End(*pair, server, server.sends, server.qos.writer) for pair in _dds_replies([server]))
+
+
+def _dds_takers(graph: _Snapshot) -> Iterator[_End]:
+    for reader in graph.readers:
+        yield from (_End(*pair, reader, reader.message_type, reader.qos) for pair in _dds_topics([reader]))
+    for server in graph.servers:
+        yield from (_End(*pair, server, server.takes, server.qos.reader) for pair in _dds_requests([server]))
+    for client in graph.clients:
+        yield from (_End(*pair, client, client.takes, client.qos.reader) for pair in _dds_replies([client]))
+
+
+def _info(end: _End, endpoint_type: int) -> dict[str, Any]:
+    version, value = end.kind.type_hash_value
     # DDS does not report the history, because it concerns no other endpoint.
-    qos = {**profile_dict(endpoint.qos), "depth": 0, "history": HISTORY_UNKNOWN}
+    qos = {**profile_dict(end.qos), "depth": 0, "history": HISTORY_UNKNOWN}
     return {
-        "node_name": endpoint.node.name,
-        "node_namespace": endpoint.node.namespace,
-        "topic_type": type_name,
+        "node_name": end.endpoint.node.name,
+        "node_namespace": end.endpoint.node.namespace,
+        "topic_type": end.type_name,
         "topic_type_hash": {"version": version, "value": value},
         "endpoint_type": endpoint_type,
-        "endpoint_gid": list(endpoint.gid),
+        "endpoint_gid": list(end.endpoint.gid),
         "qos_profile": qos,
     }
 

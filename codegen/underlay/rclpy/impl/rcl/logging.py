@@ -6,7 +6,7 @@ import os
 import threading
 from pathlib import Path
 
-from rmw_local import timing
+from rmw_local import report, timing
 
 from rclpy.impl import program
 
@@ -216,3 +216,12 @@ def _output() -> Console:
     console = _here().console
     assert console is not None
     return console
+
+
+def _log_as_node(node: str, text: str, is_warning: bool) -> None:
+    """Log what the middleware has to say to a node."""
+    severity = RCUTILS_LOG_SEVERITY.RCUTILS_LOG_SEVERITY_WARN if is_warning else _INFO
+    rclpy_logging_rcutils_log(severity, node.strip("/").replace("/", "."), text, "", "", 0)
+
+
+report.install(_log_as_node)

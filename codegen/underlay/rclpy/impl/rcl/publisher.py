@@ -10,7 +10,7 @@ from rmw_local.message import message_type
 from rmw_local.qos import unknown_policy
 
 from .clock import rcl_duration_t
-from .endpoint import EndpointHandle, resolve, warn_of_type_conflicts
+from .endpoint import EndpointHandle, resolve
 from .errors import RCLError
 from .qos import profile_of
 
@@ -32,7 +32,6 @@ class Publisher(EndpointHandle):
         self._attach(node, partial(node.graph_node.close_writer, writer))
         self._context = node.context
         self._publish = writer.publish
-        warn_of_type_conflicts(node, writer)
 
     @property
     def writer(self) -> Any:
@@ -62,7 +61,13 @@ class Publisher(EndpointHandle):
             raise TypeError(f"publish_raw(msg: bytes): got {msg!r}")
         if self._destroyed or not self._context.valid:
             self._refuse()
-        self._writer.publish_bytes(msg)
+        self._writer.publish_raw(msg)
+
+    def publish_serialized(self, data: bytes) -> None:
+        """Deliver a message of this type that rclpy itself has serialised."""
+        if self._destroyed or not self._context.valid:
+            self._refuse()
+        self._writer.publish_bytes(data)
 
     def wait_for_all_acked(self, pytimeout: rcl_duration_t) -> bool:
         """Return True: when publishing returns, every matched subscription has the message."""

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from rmw_local.graph import TypeConflictError
-from rmw_local.message import DecodeError, service_type
+from rmw_local.message import service_type
 from rmw_local.qos import unknown_policy
 
 from .clock import Clock
@@ -51,13 +51,10 @@ class Service(SourceHandle, EndpointHandle):
         letter = self._server.take()
         if letter is None:
             return None, None
-        data, stamp, gid, number = letter
-        kind = self._server.service_type.request
-        try:
-            request = kind.deserialize(data)
-        except DecodeError:
-            kind.drops.add()
+        request = self._server.read(letter)
+        if request is None:
             return None, None
+        _, stamp, gid, number, *_ = letter
         if self._introspection is not None:
             self._introspection.record(REQUEST_RECEIVED, gid, number, request=request)
         return request, rmw_service_info_t(stamp, stamp, rmw_request_id_t(number, gid))

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rmw_local.graph import TypeConflictError
 from rmw_local.message import DecodeError, message_type
 from rmw_local.qos import unknown_policy
 
-from .endpoint import EndpointHandle, SourceHandle, resolve, warn_of_type_conflicts
+from .endpoint import EndpointHandle, SourceHandle, resolve
 from .errors import RCLError
 from .qos import profile_of
+
+if TYPE_CHECKING:
+    from rmw_local.origin import Origin
 
 MessageInfo = dict[str, int | None]
 # A message (or its bytes), its source stamp [ns, system time], its number among its publisher's messages.
@@ -40,7 +43,6 @@ class Subscription(SourceHandle, EndpointHandle):
         self._kind = kind
         self._deserialize = kind.deserialize
         self._drops = kind.drops
-        warn_of_type_conflicts(node, reader)
 
     @property
     def reader(self) -> Any:
@@ -71,14 +73,23 @@ class Subscription(SourceHandle, EndpointHandle):
         """Do what `take_message` does; the metadata are made by `message_info` when they are wanted."""
         if self._destroyed:
             raise RCLError("failed to take message from subscription: subscription pointer is invalid")
-        sample: Taken | None = self._take()
+        sample: Any = self._take()
         if sample is None or raw:
-            return sample
+            return sample and sample[:3]  # type: ignore[no-any-return]
         try:
-            return self._deserialize(sample[0]), sample[1], sample[2]
+            data, stamp, number = sample
+        except ValueError:  # it is marked
+            return self._take_with_care(*sample)
+        try:
+            return self._deserialize(data), stamp, number
         except DecodeError:
             self._drops.add()
             return None
+
+    def _take_with_care(self, data: bytes, stamp: int, number: int, origin: Origin) -> Taken | None:
+        """Read bytes that may be of another definition."""
+        message = origin.read(data, self._kind, self._deserialize, self._reader.node)
+        return None if message is None else (message, stamp, number)
 
 
 def message_info(taken: Taken) -> MessageInfo:

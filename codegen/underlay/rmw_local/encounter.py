@@ -1,0 +1,100 @@
+"""Two endpoints of one type whose definitions differ: what is decided when they meet.
+
+Endpoints whose definitions are the same meet none of this.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from rmw_local.origin import Origin
+from rmw_local.passage import Downgrading, Marking
+
+if TYPE_CHECKING:
+    from ifgen_runtime.adapters import Adapter
+
+    from rmw_local.message import MessageType
+    from rmw_local.reader import Reader
+    from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceServer
+    from rmw_local.writer import Writer
+
+    Party = Reader | Writer | ServiceEndpoint
+    Ends = tuple[Any, Any]  # for each of two endpoints itself, or what stands for it
+
+_WARN, _REFUSE, _ADAPT = "warn", "refuse", "adapt"
+
+
+class Encounter(NamedTuple):
+    """A pair of endpoints. `mine` is the one whose node's policy was applied: on a topic, the reader.
+
+    `wanted` is that policy, and `policy` what came of it: a node that has no adapter refuses.
+    """
+
+    mine: Party
+    theirs: Party
+    wanted: str
+    policy: str
+
+
+def meet_on_topic(writer: Writer, reader: Reader) -> tuple[Encounter, Origin | None]:
+    """Decide about a writer and a reader; return where messages come from, None if the reader refuses.
+
+    Called with the domain's lock held, as is `meet_on_service`.
+    """
+    wanted = policy = reader.node.on_type_mismatch
+    adapter = None
+    if wanted == _ADAPT:
+        adapter = _adapter(writer.message_type, reader.message_type)
+        policy = _REFUSE if adapter is None else _ADAPT
+    origin = None if policy == _REFUSE else Origin(f"topic '{reader.topic}'", writer.node, adapter)
+    return Encounter(reader, writer, wanted, policy), origin
+
+
+def meet_on_service(client: ServiceClient, server: ServiceServer) -> tuple[Encounter, Ends | None]:
+    """Decide about a client and a server; return what each of them is to the other, None if one refuses.
+
+    Whoever refuses decides. Else whoever adapts does, the server first.
+    """
+    sides: list[tuple[ServiceEndpoint, ServiceEndpoint]] = [(server, client), (client, server)]
+    for mine, theirs in sides:
+        if mine.node.on_type_mismatch == _REFUSE:
+            return Encounter(mine, theirs, _REFUSE, _REFUSE), None
+    adapting = [(mine, theirs) for mine, theirs in sides if mine.node.on_type_mismatch == _ADAPT]
+    for mine, theirs in adapting:
+        ends = _adapted(mine, theirs)
+        if ends is not None:
+            return Encounter(mine, theirs, _ADAPT, _ADAPT), ends if mine is client else ends[::-1]
+    if adapting:
+        return Encounter(*adapting[0], _ADAPT, _REFUSE), None
+    ends = (Marking(client, _origin(server)), Marking(server, _origin(client)))
+    return Encounter(server, client, _WARN, _WARN), ends
+
+
+def _adapted(mine: ServiceEndpoint, theirs: ServiceEndpoint) -> Ends | None:
+    """Return mine and theirs, or their stand-ins, if mine adapts; None if an adapter is missing.
+
+    What mine takes is upgraded, and what it sends is downgraded.
+    """
+    to_mine: Any = mine
+    if theirs.sends.type_hash != mine.takes.type_hash:
+        adapter = _adapter(theirs.sends, mine.takes)
+        if adapter is None:
+            return None
+        to_mine = Marking(mine, _origin(theirs, adapter))
+    to_theirs: Any = theirs
+    if theirs.takes.type_hash != mine.sends.type_hash:
+        adapter = _adapter(theirs.takes, mine.sends)
+        if adapter is None or adapter.downgrade is None:
+            return None
+        to_theirs = Downgrading(theirs, _origin(theirs, adapter), mine.sends, mine.node)
+    return to_mine, to_theirs
+
+
+def _adapter(theirs: MessageType, mine: MessageType) -> Adapter | None:
+    from ifgen_runtime.mismatch.conversion import adapter_between  # late: only nodes that adapt need it
+
+    return adapter_between(theirs.cls, mine.cls)
+
+
+def _origin(peer: ServiceEndpoint, adapter: Adapter | None = None) -> Origin:
+    return Origin(f"service '{peer.name}'", peer.node, adapter)

@@ -1,0 +1,104 @@
+"""Says of endpoints that met that their definitions differ: once a pair, with no lock held."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ifgen_runtime.adapters import short
+from ifgen_runtime.mismatch.explanation import explanation, in_one_line
+from ifgen_runtime.mismatch.listeners import tell
+from ifgen_runtime.mismatch.sides import Mismatch, Side, definition_of
+from ifgen_runtime.mismatch.told import Say
+
+from rmw_local import report
+from rmw_local.message import type_name
+from rmw_local.service import ServiceEndpoint
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from rmw_local.encounter import Encounter, Party
+
+_ACTION = "/_action/"
+_PARTS = ("SendGoalService", "GetResultService", "FeedbackMessage")
+
+
+def tell_of(encounters: Iterable[Encounter]) -> None:
+    """Tell the listener, and log as the nodes whose policies were applied."""
+    for encounter in encounters:
+        subject = _Subject(encounter)
+        if subject.is_said_here:
+            _tell(subject.mismatch(), encounter)
+
+
+def _tell(mismatch: Mismatch, encounter: Encounter) -> None:
+    tell(mismatch)
+    node = encounter.mine.node
+    say = node.participant.told.count(mismatch.name)
+    if say is Say.NOTHING:
+        return
+    if say is Say.NO_MORE:
+        text = f"{mismatch.kind} '{mismatch.name}': more endpoints differ, which is not said any more"
+    else:
+        text = _explained(mismatch)
+        if encounter.wanted != encounter.policy:
+            text += f"\nNo adapter is registered, so nothing is exchanged. {_advice(mismatch)}"
+    report.say(node, text, is_warning=mismatch.policy != "adapt")
+
+
+def _explained(mismatch: Mismatch) -> str:
+    try:
+        return explanation(mismatch)
+    except Exception:  # whatever is wrong with the toolkit, nodes are made
+        return in_one_line(mismatch)
+
+
+def _advice(mismatch: Mismatch) -> str:
+    command = f"ifgen adapt {mismatch.type_name} --from {short(mismatch.theirs.type_hash)}"
+    return f"`{command}` writes one, and importing it before the node is made registers it."
+
+
+class _Subject:
+    """The topic or service of two endpoints, or the action that they are parts of."""
+
+    def __init__(self, encounter: Encounter) -> None:
+        self._encounter = encounter
+        mine, theirs = encounter.mine, encounter.theirs
+        self._classes: tuple[type[Any], type[Any]] = (mine.kind.cls, theirs.kind.cls)
+        self._kind = "service" if isinstance(mine, ServiceEndpoint) else "topic"
+        self._name, separator, _ = mine.name.partition(_ACTION)
+        self.is_said_here = True
+        if separator and mine.kind.action and theirs.kind.action:
+            self._kind = "action"
+            self._classes = (mine.kind.action, theirs.kind.action)
+            self.is_said_here = mine.kind.cls is _first_that_differs(*self._classes)
+        else:
+            self._name = mine.name
+
+    def mismatch(self) -> Mismatch:
+        """It as a value."""
+        mine, theirs = self._encounter.mine, self._encounter.theirs
+        return Mismatch(
+            self._kind,
+            self._name,
+            type_name(self._classes[0]),
+            self._encounter.policy,
+            self._side(mine, self._classes[0]),
+            self._side(theirs, self._classes[1]),
+        )
+
+    def _side(self, party: Party, cls: type[Any]) -> Side:
+        role = party.role
+        if self._kind == "action":
+            role = "action server" if role in ("publisher", "service server") else "action client"
+        return Side(party.node.full_name, role, getattr(cls, "__type_hash__", ""), definition_of(cls))
+
+
+def _first_that_differs(mine: type[Any], theirs: type[Any]) -> type[Any] | None:
+    """My class of the first part of an action that differs: one warning for all of them is enough."""
+    for part in _PARTS:
+        my_part, their_part = getattr(mine.Impl, part), getattr(theirs.Impl, part)
+        if my_part.__type_hash__ != their_part.__type_hash__:
+            cls: type[Any] = my_part
+            return cls
+    return None
