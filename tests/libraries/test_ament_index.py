@@ -144,7 +144,7 @@ print(repr(ament.get_package_share_path("my_pkg")))
 print(tried(ament.get_package_prefix, "my_pkg"))
 """
     nothing = "OSError: Environment variable 'AMENT_PREFIX_PATH' is not set or empty"
-    expected = [str(source), nothing, nothing, f"PosixPath({str(source)!r})", nothing]
+    expected = [str(source), nothing, nothing, repr(source), nothing]
     assert without_ros(tree / "none", calls, folder=source / "my_pkg") == expected  # beside the program
     assert without_ros(tree / "none", calls, source, folder=tree) == expected  # on the path
     other = tree / "src/other"

@@ -3,8 +3,8 @@
 import array
 import sys
 from collections import namedtuple
-from collections.abc import Iterable
-from typing import Any, TypeAlias, cast
+from collections.abc import Iterable, Mapping
+from typing import Any, NamedTuple, TypeAlias, cast
 
 from sensor_msgs.msg import PointCloud2, PointField
 from std_msgs.msg import Header
@@ -108,13 +108,14 @@ def create_cloud(
     fields = list(fields)
     if isinstance(points, np.ndarray):
         given = cast(_Array, points)
-        values = (_of_columns if given.dtype.names is None else _checked)(given, fields, point_step)
+        source = (_of_columns if given.dtype.names is None else _structured)(given, fields, point_step)
     else:
-        values = _of_rows(points, dtype_from_fields(fields, point_step))
-    assert values.ndim <= 2, (
+        source = _of_rows(points, dtype_from_fields(fields, point_step))
+    assert len(source.shape) <= 2, (
         "Too many dimensions for organized cloud! Points can only be organized in max. two dimensional space"
     )
-    width, height = values.shape if values.ndim == 2 else (len(values), 1)
+    width, height = source.shape if len(source.shape) == 2 else (*source.shape, 1)
+    step = source.dtype.itemsize
     cloud = PointCloud2(
         header=header,
         height=height,
@@ -122,11 +123,15 @@ def create_cloud(
         is_dense=False,
         is_bigendian=sys.byteorder != "little",
         fields=fields,
-        point_step=values.dtype.itemsize,
-        row_step=values.dtype.itemsize * width,
+        point_step=step,
+        row_step=step * width,
     )
     # An array of bytes, which a message takes as it is; it would look at each value of a list.
-    cloud.data = array.array("B", values.tobytes())
+    data = array.array("B", [0]) * (step * width * height)
+    values: _Array = np.ndarray(source.shape, source.dtype, buffer=data)
+    for name, column in source.columns.items():
+        values[name] = column
+    cloud.data = data
     return cloud
 
 
@@ -139,18 +144,26 @@ def create_cloud_xyz32(header: Header, points: Iterable[Any]) -> PointCloud2:
     return create_cloud(header, fields, points)
 
 
-def _checked(points: _Array, fields: list[PointField], point_step: int | None) -> _Array:
-    """A structured array that has these fields."""
+class _Source(NamedTuple):
+    """Points to be written: how a cloud has them, how many there are along each axis, and their values."""
+
+    dtype: np.dtype[Any]
+    shape: tuple[int, ...]
+    columns: Mapping[str, Any]
+
+
+def _structured(points: _Array, fields: list[PointField], point_step: int | None) -> _Source:
+    """The points of a structured array that has these fields."""
     dtype = dtype_from_fields(fields, points.dtype.itemsize if point_step is None else point_step)
     assert points.dtype == dtype, (
         "PointFields and structured NumPy array dtype do not match for all fields! "
         "Check their field order, names and types."
     )
-    return points
+    return _Source(dtype, points.shape, {name: points[name] for name in dtype.names or ()})
 
 
-def _of_columns(points: _Array, fields: list[PointField], point_step: int | None) -> _Array:
-    """A plain array with a column for each value, as a structured one; bytes between values are 0."""
+def _of_columns(points: _Array, fields: list[PointField], point_step: int | None) -> _Source:
+    """The points of a plain array with a column for each value."""
     assert len({field.datatype for field in fields}) <= 1, (
         "All fields need to have the same datatype. "
         "Pass a structured NumPy array with multiple dtypes otherwise."
@@ -161,17 +174,12 @@ def _of_columns(points: _Array, fields: list[PointField], point_step: int | None
         raise ValueError(
             f"points have shape {points.shape}, but the last axis should have {len(names)} values"
         )
-    values: _Array = np.zeros(points.shape[:-1], dtype)
-    for index, name in enumerate(names):
-        values[name] = points[..., index]
-    return values
+    columns = {name: points[..., index] for index, name in enumerate(names)}
+    return _Source(dtype, points.shape[:-1], columns)
 
 
-def _of_rows(points: Iterable[Any], dtype: np.dtype[Any]) -> _Array:
-    """Points that Python has as sequences, as a structured array; bytes between values are 0."""
+def _of_rows(points: Iterable[Any], dtype: np.dtype[Any]) -> _Source:
+    """Points that Python has as sequences."""
     names = dtype.names or ()
     rows = np.array([tuple(point) for point in points], dtype=[(name, dtype[name]) for name in names])
-    values: _Array = np.zeros(rows.shape, dtype)
-    for name in names:
-        values[name] = rows[name]
-    return values
+    return _Source(dtype, rows.shape, {name: rows[name] for name in names})
