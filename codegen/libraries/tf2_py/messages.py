@@ -1,0 +1,131 @@
+"""Between messages of ROS and the values of the tree."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import Quaternion, TransformStamped, Vector3
+from geometry_msgs.msg import Transform as TransformMessage
+from rclpy.logging import get_logger
+from std_msgs.msg import Header
+
+from tf2_py.exceptions import InvalidArgumentException, LookupException
+from tf2_py.transforms import Transform, normalized
+
+NANOSECONDS = 10**9
+_logger = get_logger("tf2")
+
+
+def to_nanoseconds(value: Any, what: str = "time") -> int:
+    """Return a time or a duration in nanoseconds: a message, or rclpy's.
+
+    :raises TypeError: if it is neither.
+    """
+    if hasattr(value, "nanoseconds"):
+        nanoseconds: int = value.nanoseconds
+        return nanoseconds
+    if hasattr(value, "sec") and hasattr(value, "nanosec"):
+        total: int = value.sec * NANOSECONDS + value.nanosec
+        return total
+    raise TypeError(f"{what} must have sec and nanosec, or nanoseconds.")
+
+
+def to_message(target: str, source: str, transform: Transform, stamp: int) -> TransformStamped:
+    """Return what a lookup returns."""
+    x, y, z, qx, qy, qz, qw = transform
+    sec, nanosec = divmod(stamp, NANOSECONDS)
+    return TransformStamped(
+        header=Header(stamp=Time(sec=sec, nanosec=nanosec), frame_id=target),
+        child_frame_id=source,
+        transform=TransformMessage(
+            translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=qx, y=qy, z=qz, w=qw)
+        ),
+    )
+
+
+def checked_transform(message: TransformStamped, authority: str) -> tuple[str, str, Transform] | None:
+    """Return child, parent and transform of a message.
+
+    :returns: None if it makes no sense; why is in the log.
+    """
+    translation, rotation = message.transform.translation, message.transform.rotation
+    parent = message.header.frame_id.removeprefix("/")
+    child = message.child_frame_id.removeprefix("/")
+    given: Transform = (
+        translation.x, translation.y, translation.z,
+        rotation.x, rotation.y, rotation.z, rotation.w,
+    )  # fmt: skip
+    transform = normalized(given)
+    # The sum is NaN for a NaN, and for infinities, for which the values are looked at one by one.
+    sound = transform is not None and not math.isnan(given[0] + given[1] + given[2])
+    if not sound:
+        sound = _reject_numbers(given, transform is not None, child, authority)
+    if child == parent:
+        _logger.error(
+            f'TF_SELF_TRANSFORM: Ignoring transform from authority "{authority}" with frame_id and  '
+            f'child_frame_id "{child}" because they are the same'
+        )
+        sound = False
+    if not child:
+        _logger.error(
+            f'TF_NO_CHILD_FRAME_ID: Ignoring transform from authority "{authority}" '
+            "because child_frame_id not set "
+        )
+        sound = False
+    if not parent:
+        _logger.error(
+            f'TF_NO_FRAME_ID: Ignoring transform with child_frame_id "{child}"  from authority "{authority}" '
+            "because frame_id not set"
+        )
+        sound = False
+    return (child, parent, transform) if sound and transform is not None else None
+
+
+def _reject_numbers(given: Transform, is_rotation: bool, child: str, authority: str) -> bool:
+    """Whether the numbers are right after all; else the error is in the log."""
+    numbers = " ".join(f"{value:f}" for value in given)
+    x, y, z, rotation = numbers.split(" ", 3)
+    head = f'Ignoring transform for child_frame_id "{child}" from authority "{authority}" because of'
+    if any(map(math.isnan, given)):
+        _logger.error(f"TF_NAN_INPUT: {head} a nan value in the transform ({x} {y} {z}) ({rotation})")
+        return False
+    if not is_rotation:
+        _logger.error(
+            f"TF_DENORMALIZED_QUATERNION: {head} an invalid quaternion in the transform ({rotation})"
+        )
+        return False
+    return True
+
+
+def report_old(child: str, stamp: str, authority: str) -> None:
+    """Log that a transform is older than the buffer goes back."""
+    _logger.warning(
+        f"TF_OLD_DATA ignoring data from the past for frame {child} at time {stamp} according to authority "
+        f"{authority}\nPossible reasons are listed at http://wiki.ros.org/tf/Errors%20explained"
+    )
+
+
+def invalid_name(frame: Any) -> str:
+    """Say what is wrong with the name of a frame; nothing if it is right.
+
+    :raises TypeError: if it is not a string.
+    """
+    if not isinstance(frame, str):
+        raise TypeError(f"the name of a frame must be a str, got {frame!r}")
+    if not frame:
+        return "in tf2 frame_ids cannot be empty"
+    return "in tf2 frame_ids cannot start with a '/'" if frame[0] == "/" else ""
+
+
+def validate(frame: str, argument: str, is_known: bool) -> None:
+    """Refuse the name of a frame that a lookup cannot use.
+
+    :raises InvalidArgumentException: if no frame can have this name.
+    :raises LookupException: if no frame has it.
+    """
+    if wrong := invalid_name(frame):
+        raise InvalidArgumentException(f'Invalid argument "{frame}" passed to {argument} - {wrong}')
+    if not is_known:
+        raise LookupException(f'"{frame}" passed to {argument} does not exist. ')
