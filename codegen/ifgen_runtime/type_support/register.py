@@ -41,19 +41,20 @@ def give_type_support(cls: type[Any]) -> None:
     """
     if hasattr(cls, "Goal"):
         for part in (cls.Goal, cls.Result, cls.Feedback, cls.Impl.FeedbackMessage):
-            _give(part, _message(part)[1])
+            give(part, _message(part)[1])
         for service in (cls.Impl.SendGoalService, cls.Impl.GetResultService):
             give_type_support(service)
-        _give(cls, (_action(cls),))
+        give(cls, (_action(cls),))
     elif hasattr(cls, "Request"):
         for part in (cls.Request, cls.Response, cls.Event):
-            _give(part, _message(part)[1])
-        _give(cls, (_service(cls)[1],))
+            give(part, _message(part)[1])
+        give(cls, (_service(cls)[1],))
     else:
-        _give(cls, _message(cls)[1])
+        give(cls, _message(cls)[1])
 
 
-def _give(cls: type[Any], capsules: tuple[Any, ...]) -> None:
+def give(cls: type[Any], capsules: tuple[Any, ...]) -> None:
+    """Set the capsules of a message, or the one of a service or an action, on the metaclass of its class."""
     for attribute, capsule in zip(
         _CAPSULES, capsules, strict=False
     ):  # services and actions have the first only
@@ -72,7 +73,7 @@ def _message(cls: type[Any]) -> tuple[int, tuple[Any, ...]]:
             f"{package}::{folder}",
             name,
             introspection_handle(description),
-            *_type_tables(cls, description),
+            *type_tables(cls, description),
             _encoder(cls),
             _decoder(cls),
             layout_of(cls, description),
@@ -89,7 +90,7 @@ def _service(cls: type[Any]) -> tuple[int, Any]:
             name,
             *(_message(part)[0] for part in (cls.Request, cls.Response, cls.Event)),
             _event_maker(cls.Event),
-            *_type_tables(cls, Description(describe(cls))),
+            *type_tables(cls, Description(describe(cls))),
         )
     return _services[cls]
 
@@ -102,12 +103,12 @@ def _action(cls: type[Any]) -> Any:
         _compiled_handle(impl.CancelGoalService),
         _message(impl.FeedbackMessage)[0],
         _compiled_handle(impl.GoalStatusMessage),
-        *_type_tables(cls, Description(describe(cls))),
+        *type_tables(cls, Description(describe(cls))),
     )
 
 
-def _type_tables(cls: type[Any], description: Description) -> tuple[int, int, int]:
-    """The addresses of type hash, description and sources."""
+def type_tables(cls: type[Any], description: Description) -> tuple[int, int, int]:
+    """The addresses of the type hash of a class, of its description and of its sources."""
     return (
         tables.type_hash(cls.__type_hash__),
         tables.type_description(description.individual, description.referenced),

@@ -1,0 +1,125 @@
+"""A subscription that looks at each message's publisher before it delivers."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from ifgen_runtime.adapters import short
+from ifgen_runtime.mismatch.policy import OnTypeMismatch
+from ifgen_runtime.mismatch.real_rclpy.converting import decoded
+from ifgen_runtime.mismatch.real_rclpy.deciding import applied
+from ifgen_runtime.mismatch.real_rclpy.endpoints import Part, parts_of
+from ifgen_runtime.mismatch.real_rclpy.graph import Peer, differs
+from ifgen_runtime.mismatch.real_rclpy.handles import Subscription
+from ifgen_runtime.mismatch.real_rclpy.others import Others
+from ifgen_runtime.mismatch.real_rclpy.remembered import Once
+from ifgen_runtime.mismatch.real_rclpy.taking import Taken, take
+
+
+@dataclass(slots=True)
+class IncompatibleType:
+    """The argument of a subscription's callback `incompatible_type`: rclpy's own type cannot be filled in."""
+
+    total_count: int
+    """How many publishers with another definition have been there."""
+    total_count_change: int
+    """How many of them have come since the callback was last called."""
+
+
+class SubscriptionGuard:
+    """Decides about each message of a topic."""
+
+    def __init__(self, node: Any, part: Part, policy: OnTypeMismatch) -> None:
+        self._node = weakref.ref(node)
+        self._part = part
+        self._policy = policy
+        self._others = Others(node, part)
+        self._foreign, self._said = Once(), Once()
+        self._event: Any = None
+        self._counts = IncompatibleType(0, 0)
+
+    def see(self, others: Iterable[tuple[Part, Peer]]) -> None:
+        """Take note of all publishers that are there now."""
+        found = [peer for _, peer in others]
+        self._others.see(found)
+        for peer in found:
+            if (
+                differs(peer, self._part)
+                and self._is_refused(peer.type_hash)
+                and self._foreign.is_new(peer.gid)
+            ):
+                self._counts.total_count += 1
+                self._counts.total_count_change += 1
+                if self._event is not None:
+                    self._event.trigger()
+
+    def message(self, taken: Taken, raw: bool) -> Any:
+        """The message to deliver, or its bytes for `raw`; None if it is not to be delivered."""
+        type_hash = self._others.hash_of(taken.gid)
+        if type_hash is None or any(map(self._is_refused, self._others.hashes | {type_hash})):
+            return None
+        if raw:
+            return taken.data if type_hash == self._part.type_hash else None
+        try:
+            return decoded(taken.data, type_hash, self._part.cls)
+        except Exception as error:  # the user's adapter: what a peer sends must not end the node's spin
+            self._say(
+                f"the adapter from {short(type_hash)} has failed, and the message is dropped: {error!r}"
+            )
+            return None
+
+    def call_on_foreign(self, callback: Callable[[IncompatibleType], object] | None, group: Any) -> None:
+        """Call back in this callback group when a publisher comes that is refused."""
+        node = self._node()
+        if callback is None or node is None:
+            return
+
+        def call() -> object:
+            now = IncompatibleType(self._counts.total_count, self._counts.total_count_change)
+            self._counts.total_count_change = 0
+            return callback(now)
+
+        self._event = node.create_guard_condition(call, group)
+
+    def end(self) -> None:
+        """Call back no more."""
+        node, event = self._node(), self._event
+        self._event = None
+        if node is not None and event is not None:
+            node.destroy_guard_condition(event)
+
+    def _is_refused(self, type_hash: str) -> bool:
+        if type_hash == self._part.type_hash:
+            return False
+        return applied(self._policy, "subscription", [(self._part, type_hash)]) is OnTypeMismatch.REFUSE
+
+    def _say(self, text: str) -> None:
+        node = self._node()
+        if node is not None and self._said.is_new(text):
+            node.get_logger().error(f"topic '{self._part.topic.removeprefix('rt')}': {text}")
+
+
+class GuardedSubscription(Subscription):
+    """rclpy's handle, with a guard."""
+
+    guard: SubscriptionGuard
+
+    def take_message(self, message_type: type[Any], raw: bool) -> tuple[Any, dict[str, int | None]] | None:
+        """The next message and what is known of it, as rclpy takes it; None if there is none to deliver."""
+        taken = take(self.pointer)
+        message = None if taken is None else self.guard.message(taken, raw)
+        return None if taken is None or message is None else (message, taken.info)
+
+
+def guarded_subscription(
+    node: Any, topic: str, qos: Any, cls: type[Any], policy: OnTypeMismatch
+) -> GuardedSubscription:
+    """A handle for a subscription of a node. `topic` is as its caller wrote it."""
+    with node.handle:
+        handle = GuardedSubscription(node.handle, cls, topic, qos.get_c_qos_profile())
+    (part,) = parts_of("subscription", handle.get_topic_name(), cls, qos)
+    handle.guard = SubscriptionGuard(node, part, policy)
+    return handle

@@ -1,0 +1,120 @@
+"""Says once for each pair of endpoints that their definitions differ."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Hashable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+from rclpy.logging import get_logger
+
+from ifgen_runtime.mismatch import listeners
+from ifgen_runtime.mismatch.explanation import explanation, in_one_line
+from ifgen_runtime.mismatch.policy import OnTypeMismatch
+from ifgen_runtime.mismatch.real_rclpy.asking import Asker, Question
+from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
+from ifgen_runtime.mismatch.real_rclpy.graph import Peer
+from ifgen_runtime.mismatch.real_rclpy.remembered import Once
+from ifgen_runtime.mismatch.sides import Definition, Mismatch, Side, definition_of
+
+_NAMELESS: Final = "a node without a name"
+
+
+@dataclass(frozen=True, slots=True)
+class Meeting:
+    """One of our endpoints, and another whose definition of a part differs, or is not known.
+
+    `policy` is what our endpoint's node does about it.
+    """
+
+    endpoint: Endpoint
+    part: Part
+    peer: Peer
+    policy: OnTypeMismatch
+
+    @property
+    def key(self) -> Hashable:
+        """The pair that is told of once. If both are in this process, either may be the one that looks."""
+        endpoint, peer = self.endpoint, self.peer
+        if not peer.type_hash:
+            return self.part.type_name
+        nodes = frozenset({(endpoint.node_name, endpoint.role), (peer.node, endpoint.others)})
+        return endpoint.name, nodes, frozenset({self.part.type_hash, peer.type_hash})
+
+
+class Teller:
+    """Collects meetings, asks for the definitions of the others, and warns."""
+
+    def __init__(self, context: Any, stop: threading.Event) -> None:
+        self._asker = Asker(context, stop)
+        self._told = Once()
+        self._untold: list[Meeting] = []
+        self._complaints: set[str] = set()
+
+    def note(self, meeting: Meeting) -> None:
+        """Tell of a meeting soon, unless its pair has been told."""
+        if self._told.is_new(meeting.key):
+            self._untold.append(meeting)
+
+    def tell(self, endpoints: Iterable[Endpoint]) -> None:
+        """Tell of the meetings since the last time. `endpoints` are all that this process has."""
+        meetings, self._untold = self._untold, []
+        if not meetings:
+            return
+        here = {part.type_hash: part.cls for endpoint in endpoints for part in endpoint.parts}
+        self._asker.ask(_questions(meeting for meeting in meetings if meeting.peer.type_hash not in here))
+        for meeting in meetings:
+            try:
+                if not meeting.peer.type_hash:
+                    _tell_of_no_hash(meeting)
+                elif meeting.peer.type_hash in here:
+                    _tell(meeting, definition_of(here[meeting.peer.type_hash]))
+                else:
+                    _tell(meeting, self._asker.answer(meeting.peer.type_hash))
+            except Exception as error:  # such as a node that has been destroyed meanwhile
+                self.complain(error)
+
+    def complain(self, error: Exception) -> None:
+        """Say once that something has failed, to whoever looks for it."""
+        text = f"cannot compare definitions: {error!r}"
+        if text in self._complaints:
+            return
+        self._complaints = {text}
+        try:
+            logger: Any = get_logger("ifgen")
+            logger.debug(text)
+        except Exception:  # rclpy is shutting down
+            return
+
+
+def _questions(meetings: Iterable[Meeting]) -> Iterator[Question]:
+    """The questions that make sense: nodes answer for the hash of a service, and the graph has its parts'."""
+    for meeting in meetings:
+        if meeting.part.is_message:
+            yield Question(meeting.peer.node, meeting.part.type_name, meeting.peer.type_hash)
+
+
+def _mismatch(meeting: Meeting, theirs: Definition | None) -> Mismatch:
+    endpoint, part, peer = meeting.endpoint, meeting.part, meeting.peer
+    return Mismatch(
+        endpoint.kind,
+        endpoint.name,
+        part.type_name,
+        meeting.policy.value,
+        Side(endpoint.node_name, endpoint.role, part.type_hash, definition_of(part.cls)),
+        Side(peer.node or _NAMELESS, endpoint.others, peer.type_hash, theirs),
+    )
+
+
+def _tell(meeting: Meeting, theirs: Definition | None) -> None:
+    mismatch, endpoint = _mismatch(meeting, theirs), meeting.endpoint
+    listeners.tell(mismatch)
+    text = explanation(mismatch)
+    if not endpoint.is_connected():
+        text += "\nThe middleware has not connected them: nothing is delivered between them."
+    endpoint.node.get_logger().warning(text)
+
+
+def _tell_of_no_hash(meeting: Meeting) -> None:
+    meeting.endpoint.node.get_logger().info(in_one_line(_mismatch(meeting, None)))

@@ -1,0 +1,201 @@
+"""Two processes with two versions of the same types: `mismatch.py mine|other POLICY`.
+
+`mine` prints as JSON what it hears, receives and answers. It goes on once it has seen some messages of a type that
+both share, after it has heard of all that they do not. Then `other` destroys its publisher with the other version,
+and one with the version of `mine` goes on.
+"""
+
+import json
+import os
+import sys
+import time
+
+import ifgen.dynamic
+from common import rclpy
+from ifgen_runtime.adapters import Adapter, register
+from ifgen_runtime.mismatch import listeners
+from rclpy.action import ActionClient, ActionServer
+from rclpy.event_handler import SubscriptionEventCallbacks
+
+LIMIT = 40.0  # [s]
+TICKS = 20
+OURS, THEIRS = 0, 1
+
+
+def versions(name, *texts, points=("float64 x\nfloat64 y", "float64 y\nfloat64 x")):
+    """The classes of two texts, which may contain a Point: its fields change places."""
+    return [
+        ifgen.dynamic.class_from_text(f"my_msgs/{name}", text, others={"my_msgs/msg/Point": point})
+        for text, point in zip(texts, points, strict=True)
+    ]
+
+
+SPEED = "float64 a\nPoint p"
+SPEEDS = versions("msg/Speed", SPEED, SPEED)
+ADDS = versions(
+    "srv/Add",
+    "float64 a\nfloat64 b\n---\nfloat64 sum\nbool ok",
+    "float64 b\nfloat64 a\nint32 c\n---\nbool ok\nfloat64 sum",
+)
+GOES = versions(
+    "action/Go",
+    "float64 a\n---\nfloat64 b\n---\nfloat64 c",
+    "float64 a\n---\nfloat64 b\n---\nint32 n\nfloat64 c",
+)
+Tick = ifgen.dynamic.class_from_text("my_msgs/msg/Tick", "float64 up 0.1\nbool with_both")
+
+
+def speed(version):
+    made = SPEEDS[version](a=0.1)
+    made.p.x, made.p.y = 0.2, 0.3
+    return made
+
+
+def adapt() -> None:
+    ours, theirs = SPEEDS
+
+    def upgrade(old):
+        new = ours(a=old.a)
+        new.p.x, new.p.y = old.p.x, old.p.y
+        return new
+
+    register(Adapter(theirs, ours, upgrade))
+    for part, names in (("Request", ("a", "b")), ("Response", ("sum", "ok"))):
+        ours, theirs = (getattr(add, part) for add in ADDS)
+        register(
+            Adapter(
+                theirs,
+                ours,
+                lambda old, new=ours, names=names: new(**{name: getattr(old, name) for name in names}),
+                lambda new, old=theirs, names=names: old(**{name: getattr(new, name) for name in names}),
+            )
+        )
+
+
+def serve(node, version, name, requests) -> None:
+    Add = ADDS[version]
+
+    def add(request, response):
+        requests.append([request.a, request.b])
+        response.sum, response.ok = request.a + request.b, True
+        return response
+
+    node.create_service(Add, name, add)
+
+
+def mine() -> None:
+    began = time.monotonic()
+    heard, received, requests, events = [], [], [], []
+    ticks = []
+
+    def hear(mismatch) -> None:
+        theirs = mismatch.theirs
+        found = [mismatch.kind, mismatch.name, mismatch.policy, mismatch.type_name]
+        heard.append(
+            [*found, mismatch.mine.node, theirs.node, theirs.definition is not None, time.monotonic()]
+        )
+
+    listeners.heard = hear
+    rclpy.init(args=["--ros-args", "-r", "speed_in:=/speed"])
+    node = rclpy.create_node("mine", namespace="/robot")
+    node.create_subscription(
+        SPEEDS[OURS],
+        "speed_in",
+        lambda message: received.append([message.a, message.p.x, message.p.y]),
+        10,
+        event_callbacks=SubscriptionEventCallbacks(
+            incompatible_type=lambda event: events.append([event.total_count, event.total_count_change])
+        ),
+    )
+    node.create_subscription(Tick, "/tick", ticks.append, 10)
+    go_on = node.create_publisher(Tick, "/go_on", 10)
+    serve(node, OURS, "/serve", requests)
+    client = node.create_client(ADDS[OURS], "/ask")
+    server = ActionServer(node, GOES[OURS], "/go", lambda goal: GOES[OURS].Result())
+    created = time.monotonic()
+
+    future = None
+    expected = 4 if os.environ["IFGEN_ON_TYPE_MISMATCH"] != "adapt" else 5
+    seen_before = None
+
+    def have_heard() -> bool:
+        nonlocal future, seen_before
+        if future is None and client.service_is_ready():
+            future = client.call_async(ADDS[OURS].Request(a=0.1, b=0.2))
+        if len(heard) < 4 or (expected == 5 and not (future and future.done() and requests)):
+            return False
+        if seen_before is None:
+            seen_before = len(ticks)
+        return len(ticks) - seen_before >= TICKS
+
+    def spin_until(holds) -> bool:
+        while not holds() and time.monotonic() < began + LIMIT:
+            rclpy.spin_once(node, timeout_sec=0.02)
+        return bool(holds())
+
+    complete = spin_until(have_heard)
+    received_before = list(received)
+    go_on.publish(Tick())
+    spin_until(lambda: ticks and not ticks[-1].with_both)
+    received.clear()
+    left = spin_until(lambda: len(received) >= 5)
+    met = max(created, ticks[0].up) if ticks else created
+    response = future.result() if future is not None and future.done() else None
+    print(
+        json.dumps(
+            {
+                "complete": [complete, left],
+                "heard": [[*found[:-1], round(found[-1] - met, 3)] for found in heard],
+                "received": received_before,
+                "later": received,
+                "requests": requests,
+                "response": response and [response.sum, response.ok],
+                "events": events,
+            }
+        )
+    )
+    server.destroy()
+    node.destroy_node()
+    rclpy.shutdown()
+
+
+def other() -> None:
+    rclpy.init()
+    node, twin = rclpy.create_node("other"), rclpy.create_node("twin")
+    node.add = twin.create_publisher(SPEEDS[OURS], "/speed", 10)  # as `mine` has it
+    publisher = node.create_publisher(SPEEDS[THEIRS], "/speed", 10)
+    tick = node.create_publisher(Tick, "/tick", 10)
+    serve(node, THEIRS, "/ask", [])
+    client = node.create_client(ADDS[THEIRS], "/serve")
+    action = ActionClient(node, GOES[THEIRS], "/go")
+    up = time.monotonic()
+    asked = []
+
+    def stop(message) -> None:
+        nonlocal publisher
+        if publisher is not None:
+            node.destroy_publisher(publisher)
+            publisher = None
+
+    def publish() -> None:
+        if publisher is not None:
+            publisher.publish(speed(THEIRS))
+        node.add.publish(speed(OURS))
+        tick.publish(Tick(up=up, with_both=publisher is not None))
+        if not asked and client.service_is_ready():
+            asked.append(client.call_async(ADDS[THEIRS].Request(a=0.1, b=0.2)))
+
+    node.create_subscription(Tick, "/go_on", stop, 10)
+    node.create_timer(0.02, publish)
+    try:
+        rclpy.spin(node)
+    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+        action.destroy()
+
+
+if __name__ == "__main__":
+    role, policy = sys.argv[1:]
+    os.environ["IFGEN_ON_TYPE_MISMATCH"] = policy if role == "mine" else "warn"
+    if policy == "adapt" and role == "mine":
+        adapt()
+    {"mine": mine, "other": other}[role]()

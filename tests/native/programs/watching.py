@@ -1,0 +1,81 @@
+"""What the thread that looks for other definitions does besides: parameters, forks, two contexts, many nodes."""
+
+import os
+import sys
+import threading
+
+import ifgen.dynamic
+from common import rclpy, spin_until
+from ifgen_runtime.mismatch import listeners
+from ifgen_runtime.mismatch.real_rclpy.watch import watch_of
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+Ours, Theirs = (
+    ifgen.dynamic.class_from_text("my_msgs/msg/Speed", text) for text in ("float64 a", "float64 a\nint32 b")
+)
+MANY = int(sys.argv[1])
+heard = []
+listeners.heard = heard.append
+
+
+def threads() -> int:
+    return sum(thread.name == "ifgen type mismatch" for thread in threading.enumerate())
+
+
+class Careful(Node):
+    on_type_mismatch = "refuse"
+
+
+rclpy.init()
+print("before", threads())
+careful = Careful("careful")
+received = []
+careful.create_subscription(Ours, "/one", received.append, 10)  # the first endpoint of all
+wrong = [Parameter("on_type_mismatch", value="sometimes")]
+try:
+    Node("wrong", parameter_overrides=wrong).create_subscription(Ours, "/one", received.append, 10)
+except ValueError as error:
+    print(error)
+unmoved = Careful("unmoved", parameter_overrides=[Parameter("on_type_mismatch", value="warn")])
+unmoved.create_subscription(Ours, "/one", lambda message: None, 10)
+print("running", threads())
+
+child = os.fork()
+if child == 0:
+    os._exit(threads())
+print("child", os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+
+peer = rclpy.create_node("peer")
+peer.create_publisher(Theirs, "/one", 10)
+spin_until(peer, lambda: len(heard) >= 2)
+for mismatch in sorted(heard, key=lambda mismatch: mismatch.mine.node):
+    print(mismatch.mine.node, mismatch.mine.role, mismatch.policy, mismatch.theirs.definition is not None)
+
+second = Context()
+second.init()
+apart = Node("apart", context=second)
+apart.create_publisher(Theirs, "/two", 10)
+print("two contexts", threads())
+apart.destroy_node()
+second.shutdown()
+spin_until(peer, lambda: threads() == 1)
+print("one context", threads())
+
+heard.clear()
+for number in range(MANY):
+    node = Node(f"passing_{number}", enable_rosout=False, start_parameter_services=False)
+    node.create_publisher(Theirs, "/one", 1)
+    if number % 50 == 49:
+        spin_until(careful, lambda number=number: len(heard) >= 1)
+    node.destroy_node()
+watch = watch_of(careful.context)
+spin_until(careful, lambda: len(watch._nodes) <= 3)
+print("many", bool(heard), "watched nodes", sorted(node.node().get_name() for node in watch._nodes.values()))
+
+rclpy.shutdown()
+for thread in threading.enumerate():
+    if thread.name == "ifgen type mismatch":
+        thread.join(5)
+print("after", threads(), received)

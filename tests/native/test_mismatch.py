@@ -1,0 +1,89 @@
+"""Peers whose definitions differ, on real rclpy: they are told of, and kept away as the policy says."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+from typing import Any
+
+import pytest
+
+from .support import DISTRIBUTION, PROGRAMS, needs_rclpy, run_python
+
+pytestmark = needs_rclpy
+PROGRAM = str(PROGRAMS / "mismatch.py")
+GOOD = [0.1, 0.2, 0.3]
+MATCHES_BY_HASH = DISTRIBUTION == "kilted"
+
+
+def meet(policy: str) -> tuple[dict[str, Any], str]:
+    """What a node with this policy has seen of one with other definitions; its warnings."""
+    command = [sys.executable, PROGRAM, "other", policy]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as other:
+        try:
+            ran = run_python(PROGRAM, "mine", policy, limit=90)
+        finally:
+            other.send_signal(signal.SIGINT)
+            output, errors = other.communicate(timeout=20)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert (other.returncode, output) == (0, ""), errors
+    assert "Traceback" not in ran.stderr + errors, ran.stderr + errors
+    seen: dict[str, Any] = json.loads(ran.stdout)
+    assert seen["complete"] == [True, True], seen
+    assert all(message == GOOD for message in seen["later"]), "garbage after the other publisher had left"
+    return seen, ran.stderr
+
+
+@pytest.mark.parametrize("policy", ["warn", "refuse", "adapt"])
+def test_peers_with_other_definitions(policy: str) -> None:
+    if MATCHES_BY_HASH and policy == "adapt":
+        pytest.skip("this ROS 2 connects equal definitions only")
+    seen, warnings = meet(policy)
+    told = policy if policy != "warn" else "warn"
+    assert sorted(found[:6] for found in seen["heard"]) == [
+        ["action", "/go", "warn", "my_msgs/action/Go_FeedbackMessage", "/robot/mine", "/other"],
+        ["service", "/ask", told, "my_msgs/srv/Add_Request", "/robot/mine", "/other"],
+        ["service", "/serve", told, "my_msgs/srv/Add_Request", "/robot/mine", "/other"],
+        ["topic", "/speed", told, "my_msgs/msg/Speed", "/robot/mine", "/other"],
+    ]
+    described = {found[0]: found[6] for found in seen["heard"]}
+    assert described == {"topic": True, "action": True, "service": False}
+    delays = [found[-1] for found in seen["heard"]]
+    print(f"{policy}: told {min(delays):.2f} to {max(delays):.2f} s after they met")
+    assert max(delays) < 10, "within a second, where the machine has time"
+    assert warnings.count("[WARN]") == 4, warnings
+    received, asked = seen["received"], [seen["requests"], seen["response"]]
+    garbage = [message for message in received if message != GOOD]
+    match policy:
+        case "warn":
+            assert bool(garbage) != MATCHES_BY_HASH, "as ROS"
+            assert ("not connected" in warnings) == MATCHES_BY_HASH, warnings
+        case "refuse":
+            assert asked == [[], None]
+            assert seen["events"] == [[1, 1]]
+            assert not garbage
+        case _:
+            assert received
+            assert not garbage
+            assert asked == [[[0.1, 0.2]], [pytest.approx(0.3), True]]
+
+
+@pytest.mark.parametrize("many", [100, pytest.param(1000, marks=pytest.mark.slow)])
+def test_the_thread_that_watches(many: int) -> None:
+    ran = run_python(str(PROGRAMS / "watching.py"), str(many), limit=250)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert "Traceback" not in ran.stderr, ran.stderr
+    assert ran.stdout.splitlines() == [
+        "before 0",
+        "parameter on_type_mismatch is 'sometimes', expected one of warn, refuse, adapt",
+        "running 1",
+        "child 0",
+        "/careful subscription refuse True",
+        "/unmoved subscription warn True",
+        "two contexts 2",
+        "one context 1",
+        "many True watched nodes ['careful', 'peer', 'unmoved']",
+        "after 0 []",
+    ]
