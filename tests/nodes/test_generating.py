@@ -303,6 +303,19 @@ def test_an_edited_base_is_kept_beside_and_told_once(ears: Path, capsys: pytest.
     assert err.count("warning") == 1
 
 
+def test_the_policy_towards_other_definitions(ears: Path) -> None:
+    base = ears.with_name("_ears_base.py")
+    assert "on_type_mismatch" not in base.read_text()
+    describe(
+        "ears", EARS.replace("~/right", "type_mismatch") + "codegen: {ifgen: {on_type_mismatch: adapt}}\n"
+    )
+    generate()
+    text = base.read_text()
+    assert '    on_type_mismatch = "adapt"\n' in text
+    assert text.count("on_type_mismatch =") == 1
+    assert "def on_type_mismatch(" not in text  # the subscription's callback, which would hide it
+
+
 def test_a_node_that_is_gone_leaves_the_users_module(ears: Path, capsys: pytest.CaptureFixture[str]) -> None:
     describe("eyes", EARS)
     generate()

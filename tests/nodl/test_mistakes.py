@@ -214,6 +214,8 @@ OPTIONS = [
     ("unknown-key", options("⟦styles⟧: asyncio"), "did you mean `style`"),
     ("unknown-value", options("style: ⟦async⟧"), "callbacks, lifecycle or asyncio"),
     ("wrong-value", options("style: ⟦5⟧"), "one of the texts"),
+    ("unknown-value", options("on_type_mismatch: ⟦refused⟧"), "warn, refuse or adapt"),
+    ("wrong-value", options("on_type_mismatch: ⟦true⟧"), "one of the texts"),
     ("wrong-value", "nodl_version: 2\ncodegen: {ifgen: ⟦[]⟧}\n", "must be a map"),
     ("wrong-value", options("tests: ⟦contract⟧"), "must be a list"),
     ("unknown-value", options("tests: [contract, ⟦topic⟧]"), "did you mean `topics`"),

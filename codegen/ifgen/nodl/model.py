@@ -15,6 +15,7 @@ from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, Source, Span
 
 Style = Literal["callbacks", "lifecycle", "asyncio"]
+MismatchPolicy = Literal["warn", "refuse", "adapt"]
 """The kind of a node class: a plain Node, a LifecycleNode, or a Node whose callbacks are coroutines."""
 
 ClockName = Literal["ros", "steady", "system"]
@@ -165,6 +166,7 @@ class NodeDescription:
     action_clients: tuple[Endpoint, ...]
     timers: tuple[Timer, ...] = ()
     tests: tuple[str, ...] | None = None
+    on_type_mismatch: MismatchPolicy | None = None
     path: Path | None = field(default=None, compare=False, repr=False)
     span: Span | None = field(default=None, compare=False, repr=False)
 

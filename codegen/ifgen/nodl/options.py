@@ -14,7 +14,7 @@ from pydantic.config import JsonDict
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
-from ifgen.nodl.model import ClockName, NodeDescription, Parameter, Style, Timer, Validator
+from ifgen.nodl.model import ClockName, MismatchPolicy, NodeDescription, Parameter, Style, Timer, Validator
 from ifgen.nodl.syntax import explain
 from ifgen.nodl.syntax.tree import Key, ListNode, MapNode, Node, ScalarNode, plain_value
 from ifgen.nodl.validators import is_custom
@@ -72,6 +72,9 @@ class Options(BaseModel):
     business_file: str | None = Field(
         default=None, description="Your module: a file name.", json_schema_extra=_MODULE
     )
+    on_type_mismatch: MismatchPolicy | None = Field(
+        default=None, description="What the node does if another one has another definition of a type."
+    )
     timers: list[TimerOptions] = Field(default=[], description="The timers of the node.")
     validators: dict[str, str] = Field(
         default={}, description="For each custom validator (ns::name) the dotted path of a Python function."
@@ -116,6 +119,7 @@ def applied(node: NodeDescription, tree: MapNode, problems: FileProblems) -> Nod
         style=options.style,
         node_class=options.node_class or node.node_class,
         business_file=file or node.business_file,
+        on_type_mismatch=options.on_type_mismatch,
         parameters=tuple(_with_functions(parameter, options.validators) for parameter in node.parameters),
         timers=tuple(_timers(options, tree, wrong, problems)),
         tests=None

@@ -1,4 +1,4 @@
-"""Who else hears of definitions that differ: both transports tell, and strict mode for tests listens."""
+"""A listener for definitions that differ: both transports tell it, and strict mode for tests is one."""
 
 from __future__ import annotations
 

@@ -27,11 +27,13 @@ class OnTypeMismatch(StrEnum):
 def policy_of(node: Any, override: object = None) -> OnTypeMismatch:
     """The policy of a node, from its parameter (`override`), else its class, else the environment.
 
-    Without any, it is to warn. Raises ValueError, in one sentence, for a value that is none of the three.
+    Without any, it is to warn. A method of this name is none: a node may call back so. Raises ValueError, in
+    one sentence, for a value that is none of the three.
     """
+    attribute = getattr(node, NAME, None)
     for value, place in (
         (override, f"parameter {NAME}"),
-        (getattr(node, NAME, None), f"{type(node).__name__}.{NAME}"),
+        (None if callable(attribute) else attribute, f"{type(node).__name__}.{NAME}"),
         (os.environ.get(VARIABLE) or None, VARIABLE),
     ):
         if value is not None:

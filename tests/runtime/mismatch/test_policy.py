@@ -27,6 +27,13 @@ def test_the_parameter_comes_before_the_class_and_that_before_the_environment(
     assert policy_of(Refusing(), "warn") is OnTypeMismatch.WARN
 
 
+def test_a_method_of_this_name_is_no_policy() -> None:
+    class Calling:
+        def on_type_mismatch(self) -> None: ...
+
+    assert policy_of(Calling()) is OnTypeMismatch.WARN
+
+
 def test_a_value_that_is_no_policy_says_where_it_is_and_what_was_expected(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

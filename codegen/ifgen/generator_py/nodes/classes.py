@@ -79,6 +79,7 @@ def _module(node: NodeDescription, texts: NodeTexts, of_base: Imports, title: st
         action_servers=texts.action_servers,
         action_clients=texts.action_clients,
         timers=texts.timers,
+        on_type_mismatch=quoted(node.on_type_mismatch) if node.on_type_mismatch else "",
     )
 
 

@@ -131,6 +131,7 @@ class NodeModule:
     with the calls that make them. `needs_group` is true if some callbacks run beside others, `in_threads` if
     `main` needs more than one thread, and `sends_once` if a publisher is `once`. `has_long_names` is true if
     names are too long for the line breaks of `ruff format`. `ways_to_run` is for the user's module.
+    `on_type_mismatch` is a literal, or empty.
     """
 
     package: str
@@ -158,6 +159,7 @@ class NodeModule:
     clients: tuple[ClientText, ...]
     action_servers: tuple[ActionServerText, ...]
     action_clients: tuple[ActionClientText, ...]
+    on_type_mismatch: str
     timers: tuple[TimerText, ...]
     ways_to_run: str = ""
 
