@@ -106,6 +106,19 @@ def attached(cls: type[Any]) -> Codec:
     return cls.__serialize__, cls.__deserialize__
 
 
+def packer(cls: type[Any]) -> Callable[[Any], Any]:
+    """The `__serialize__` of a generated class, for messages that go to one reader in this process.
+
+    Where C runs, a message with a large array becomes a parcel in place of bytes. `__deserialize__` takes a
+    parcel once, and its message gets the arrays in it. `bytes()` makes the bytes of a parcel.
+    """
+    encode, _ = attached(cls)
+    extension = chosen().extension
+    if extension is None or "__codec__" not in vars(cls) or cls in chosen().refused:
+        return encode
+    return extension.codec_packer(cls)  # type: ignore[no-any-return]
+
+
 def decoder_in_python(cls: type[Any]) -> Callable[..., Any] | None:
     """The generated function that reads messages of a class; None if the class has none."""
     functions = getattr(cls, "__codec__", None)

@@ -34,25 +34,27 @@ codec *codec_attach(PyTypeObject *cls, PyObject *encode, PyObject *decode, const
 
 /* What a message comes to on the wire: memory that grows, and places in it where large arrays follow, which are copied once, in
  * the end. Until then no object may change, so keep the GIL and call nothing of Python's in between. */
-enum { CODEC_PIECES = 8 };
+enum { CODEC_PIECES = 8, CODEC_LARGE = 4096 /* bytes: more are worth a call to save a copy */ };
+typedef struct {
+  PyObject *owner; /* of the data; borrowed */
+  const void *data;
+  size_t size;
+  size_t before; /* how much of the memory comes first */
+} codec_piece;
 typedef struct {
   uint8_t *data;
   size_t used, capacity;
   bool borrowed; /* the data still is the caller's */
+  size_t large;  /* arrays of more bytes become pieces */
   size_t lent;   /* the size of all pieces */
   int piece_count;
-  struct {
-    PyObject *owner; /* of the data; borrowed */
-    const void *data;
-    size_t size;
-    size_t before; /* how much of the memory comes first */
-  } pieces[CODEC_PIECES];
+  codec_piece pieces[CODEC_PIECES];
 } codec_buffer;
 
 /* codec_write.c */
 
 /* Write a message, header included. The buffer may begin with memory of the caller's (`data`, `capacity`, `borrowed`), or
- * with nothing. Release it whatever the outcome. */
+ * with nothing; `large` is set. Release it whatever the outcome. */
 codec_outcome codec_write(codec *, PyObject *message, codec_buffer *);
 
 /* codec_buffer.c */
@@ -67,6 +69,17 @@ bool codec_buffer_grow(codec_buffer *, size_t more); /* to room for so many byte
  * where `viewed` is the object of bytes that holds the payload, sequences of numbers are views of it. */
 codec_outcome codec_read(codec *, const uint8_t *payload, size_t size, PyObject *viewed, PyObject **message);
 void codec_view_class(PyObject *cls); /* ifgen_runtime.views.SequenceView */
+
+/* The same from what was written, where its pieces belong to array.arrays. The message gets these. */
+codec_outcome codec_read_pieces(codec *, const codec_buffer *written, PyObject **message);
+
+/* codec_parcel.c: messages that go to one reader in this process. Their large arrays are copied when the parcel is made, and
+ * the message that is made of it gets these copies. */
+bool parcel_open_type(void);                                    /* false with a Python error */
+bool is_parcel(PyObject *);
+PyObject *parcel_make(codec *, const codec_buffer *written);    /* NULL without an error where no array is large */
+PyObject *parcel_bytes(PyObject *parcel);                       /* all of it */
+codec_outcome parcel_read(codec *, PyObject *parcel, PyObject **message);
 
 /* codec_equal.c and codec_copy.c: what `==`, `copy.deepcopy` and `copy.copy` do with a message of exactly this class; a new
  * reference, or NULL with whatever error the generated method would raise. They may run code of users. */

@@ -15,7 +15,7 @@ typedef struct {
   int flags;
 } numpy_array;
 
-enum { C_CONTIGUOUS = 1, LARGE = 4096 /* bytes: more are worth a call to save a copy */ };
+enum { C_CONTIGUOUS = 1 };
 
 static const char *const dtype_names[NUMBER_COUNT] = {
     [NUMBER_INT8] = "int8",     [NUMBER_UINT8] = "uint8",   [NUMBER_INT16] = "int16",     [NUMBER_UINT16] = "uint16",
@@ -88,7 +88,7 @@ static const numpy_array *as_numpy(PyObject *value, number_type type, size_t *co
 /* Large ones are not copied yet, but noted. */
 static bool write_numbers(codec_buffer *buffer, PyObject *owner, const void *numbers, number_type type, size_t count) {
   const size_t size = count * number_sizes[type];
-  const bool is_noted = size > LARGE && buffer->piece_count < CODEC_PIECES;
+  const bool is_noted = size > buffer->large && buffer->piece_count < CODEC_PIECES;
   if (!buffer_reserve(buffer, is_noted ? 7 : 7 + size)) return false;
   buffer_align(buffer, number_sizes[type]);
   if (is_noted) {
@@ -233,7 +233,7 @@ codec_outcome sequence_read(payload *from, number_type type, size_t count, PyObj
   if (!start) return CODEC_UNUSUAL;
   if (from->viewed) return view(from, type, count, start, made);
   if (!know_array(type)) return codec_failed();
-  const bool is_large = size > LARGE;
+  const bool is_large = size > CODEC_LARGE;
   *made = PySequence_Repeat(single_elements[type], is_large ? 0 : (Py_ssize_t)count);
   if (!*made) return codec_failed();
   if (is_large) {

@@ -11,13 +11,22 @@ static PyObject *serialize_other, *deserialize_other, *encode_derived;
 /* How often C did the work, and how often it left it to Python: for tests and ifgen doctor. */
 static unsigned long long times_written, times_read, times_left;
 
-static PyObject *serialize_with(codec *it, PyObject *message) {
+static size_t large_in_parcels = CODEC_LARGE;
+
+static PyObject *bytes_of(const codec_buffer *written) {
+  PyObject *bytes = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)codec_buffer_size(written));
+  if (bytes) codec_buffer_copy(written, 0, (uint8_t *)PyBytes_AsString(bytes));
+  return bytes;
+}
+
+/* The bytes of a message, or a parcel of one with large arrays where that will do. */
+static PyObject *serialize_with(codec *it, PyObject *message, bool as_parcel) {
   uint8_t local[LOCAL_SIZE];
-  codec_buffer buffer = {.data = local, .capacity = sizeof local, .borrowed = true};
+  codec_buffer buffer = {.data = local, .capacity = sizeof local, .borrowed = true, .large = as_parcel ? large_in_parcels : CODEC_LARGE};
   PyObject *bytes = NULL;
   codec_outcome outcome = codec_write(it, message, &buffer);
-  if (outcome == CODEC_DONE && (bytes = PyBytes_FromStringAndSize(NULL, (Py_ssize_t)codec_buffer_size(&buffer))))
-    codec_buffer_copy(&buffer, 0, (uint8_t *)PyBytes_AsString(bytes));
+  if (outcome == CODEC_DONE && as_parcel && buffer.piece_count) bytes = parcel_make(it, &buffer);
+  if (outcome == CODEC_DONE && !bytes && !PyErr_Occurred()) bytes = bytes_of(&buffer);
   codec_buffer_release(&buffer);
   if (outcome == CODEC_UNUSUAL) {
     times_left++;
@@ -30,6 +39,14 @@ static PyObject *serialize_with(codec *it, PyObject *message) {
 /* `otherwise` is the function in Python that does the same. */
 static PyObject *deserialize_with(codec *it, PyObject *data, bool is_viewed, PyObject *otherwise) {
   PyObject *message;
+  if (is_parcel(data)) {
+    codec_outcome outcome = is_viewed ? CODEC_UNUSUAL : parcel_read(it, data, &message);
+    if (outcome != CODEC_UNUSUAL) return outcome == CODEC_DONE ? times_read++, message : NULL;
+    PyObject *bytes = parcel_bytes(data);
+    message = bytes ? deserialize_with(it, bytes, is_viewed, otherwise) : NULL;
+    Py_XDECREF(bytes);
+    return message;
+  }
   if (Py_IS_TYPE(data, &PyBytes_Type)) {
     const uint8_t *start = (const uint8_t *)PyBytes_AsString(data);
     switch (codec_read(it, start, (size_t)PyBytes_Size(data), is_viewed ? data : NULL, &message)) {
@@ -45,7 +62,14 @@ static PyObject *deserialize_with(codec *it, PyObject *data, bool is_viewed, PyO
 static PyObject *method_serialize(PyObject *message, PyObject *nothing) {
   (void)nothing;
   codec *it = codec_of(Py_TYPE(message));
-  return it ? serialize_with(it, message) : PyObject_CallFunctionObjArgs(encode_derived, message, NULL);
+  return it ? serialize_with(it, message, false) : PyObject_CallFunctionObjArgs(encode_derived, message, NULL);
+}
+
+/* The same, as a parcel where one will do. */
+static PyObject *method_pack(PyObject *message, PyObject *nothing) {
+  (void)nothing;
+  codec *it = codec_of(Py_TYPE(message));
+  return it ? serialize_with(it, message, true) : PyObject_CallFunctionObjArgs(encode_derived, message, NULL);
 }
 
 /* cls.__deserialize__(data): a function of each class. */
@@ -61,6 +85,7 @@ static PyObject *function_view(PyObject *pair, PyObject *data) {
 }
 
 static PyMethodDef serialize_method = {"__serialize__", method_serialize, METH_NOARGS, "The CDR form of the message."};
+static PyMethodDef pack_method = {"__serialize__", method_pack, METH_NOARGS, "The message for one reader in this process."};
 static PyMethodDef view_function = {"view", function_view, METH_O, "The message in these bytes, with views of them."};
 static PyMethodDef deserialize_function = {"__deserialize__", function_deserialize, METH_O, "The message in these bytes."};
 
@@ -84,7 +109,7 @@ static PyObject *call_other(PyObject *function, PyObject *const *arguments, Py_s
 static PyObject *native_serialize(PyObject *module, PyObject *const *arguments, Py_ssize_t count, PyObject *names) {
   (void)module;
   codec *it = count == 1 && !names ? codec_of(Py_TYPE(arguments[0])) : NULL;
-  return it ? serialize_with(it, arguments[0]) : call_other(serialize_other, arguments, count, names);
+  return it ? serialize_with(it, arguments[0], false) : call_other(serialize_other, arguments, count, names);
 }
 
 static PyObject *native_deserialize(PyObject *module, PyObject *const *arguments, Py_ssize_t count, PyObject *names) {
@@ -121,6 +146,7 @@ static PyObject *native_open(PyObject *module, PyObject *arguments) {
   if (__BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__) return PyUnicode_FromString("this machine is big endian");
   if (PyInterpreterState_GetID(PyInterpreterState_Get())) return PyUnicode_FromString("this is a sub-interpreter");
   if (!is_known_float()) return PyUnicode_FromString("the floats of this interpreter are not laid out as CPython's");
+  if (!parcel_open_type()) return NULL;
   replace(&serialize_other, serialize);
   replace(&deserialize_other, deserialize);
   replace(&encode_derived, derived);
@@ -156,6 +182,20 @@ static PyObject *native_viewer(PyObject *module, PyObject *arguments) {
   return function;
 }
 
+static PyObject *native_packer(PyObject *module, PyObject *cls) {
+  (void)module;
+  if (!PyType_Check(cls) || !codec_of((PyTypeObject *)cls)) return PyErr_Format(PyExc_TypeError, "%R has no codec in C", cls);
+  return PyDescr_NewMethod((PyTypeObject *)cls, &pack_method);
+}
+
+static PyObject *native_large_in_parcels(PyObject *module, PyObject *size) {
+  (void)module;
+  const size_t before = large_in_parcels, next = PyLong_AsSize_t(size);
+  if (PyErr_Occurred()) return NULL;
+  large_in_parcels = next;
+  return PyLong_FromSize_t(before);
+}
+
 static PyObject *native_array(PyObject *module, PyObject *const *arguments, Py_ssize_t count) {
   (void)module;
   if (count != 2 || !PyUnicode_Check(arguments[0]) || PyUnicode_GetLength(arguments[0]) != 1)
@@ -178,6 +218,8 @@ PyMethodDef codec_methods[] = {
     {"codec_attach", native_attach, METH_VARARGS, "Give a class its codec; its __serialize__ and __deserialize__."},
     {"codec_viewer", native_viewer, METH_VARARGS, "The function that reads messages of a class with views; of a class without a codec, the given one."},
     {"codec_methods", native_codec_methods, METH_O, "The __eq__, __deepcopy__ and __copy__ of a class that has a codec."},
+    {"codec_packer", native_packer, METH_O, "Like the __serialize__ of a class that has a codec, but messages with large arrays become parcels: bytes() makes their bytes, and __deserialize__ takes them, once."},
+    {"codec_large_in_parcels", native_large_in_parcels, METH_O, "For tests: set from how many bytes on an array is large, and return what it was."},
     {"codec_array", (PyCFunction)(void (*)(void))native_array, METH_FASTCALL, "array.array(typecode, values), in less time."},
     {"codec_counts", native_counts, METH_NOARGS, "How many messages C has written and read, and how many it left to Python."},
     {NULL, NULL, 0, NULL},

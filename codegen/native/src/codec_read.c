@@ -7,12 +7,14 @@ enum { FEW_MESSAGES = 32 };
 
 static codec_outcome read_rows(payload *, const row *first, size_t count, PyObject **messages, unsigned depth);
 
-/* Read the number of elements unless it is fixed. It is checked against the bytes left before anything is made. */
-static bool read_element_count(payload *from, const row *r, uint32_t *count) {
+/* Read the number of elements unless it is fixed. */
+static bool read_count(payload *from, const row *r, uint32_t *count) {
   *count = r->size;
-  if (!r->size && (!payload_count(from, count) || (r->maximum && *count > r->maximum))) return false;
-  return *count <= (from->end - from->at) / r->least;
+  return r->size || (payload_count(from, count) && !(r->maximum && *count > r->maximum));
 }
+
+/* It is checked against the bytes left before anything is made. */
+static bool are_there(const payload *from, const row *r, uint32_t count) { return count <= (from->end - from->at) / r->least; }
 
 /* A list of so many elements, each made by one of the ways below. */
 static codec_outcome read_element(payload *from, const row *r, PyObject **messages, unsigned depth, PyObject **element) {
@@ -36,7 +38,7 @@ static codec_outcome read_element(payload *from, const row *r, PyObject **messag
 
 static codec_outcome read_list(payload *from, const row *r, PyObject **messages, unsigned depth, PyObject **made) {
   uint32_t count;
-  if (depth > TABLE_MAX_DEPTH || !read_element_count(from, r, &count)) return CODEC_UNUSUAL;
+  if (depth > TABLE_MAX_DEPTH || !read_count(from, r, &count) || !are_there(from, r, count)) return CODEC_UNUSUAL;
   const size_t start = from->at;
   if (r->last_read && count && last_texts_read(r->last_read, from, count, made)) return CODEC_DONE;
   PyObject *list = PyList_New((Py_ssize_t)count);
@@ -52,9 +54,25 @@ static codec_outcome read_list(payload *from, const row *r, PyObject **messages,
   return CODEC_DONE;
 }
 
+/* Take the next piece if it belongs here. */
+static bool read_piece(payload *from, size_t size, size_t alignment, PyObject **made) {
+  const codec_piece *piece = from->pieces;
+  const size_t padding = (HEADER_SIZE - from->at - from->lent) & (alignment - 1);
+  if (!from->piece_count || piece->before != from->at + padding || piece->size != size) return false;
+  from->at += padding;
+  from->lent += size;
+  from->pieces++;
+  from->piece_count--;
+  Py_INCREF(piece->owner);
+  *made = piece->owner;
+  return true;
+}
+
 static codec_outcome read_sequence(payload *from, const row *r, PyObject **made) {
   uint32_t count;
-  return read_element_count(from, r, &count) ? sequence_read(from, r->number, count, made) : CODEC_UNUSUAL;
+  if (!read_count(from, r, &count)) return CODEC_UNUSUAL;
+  if (count && read_piece(from, (size_t)count * number_sizes[r->number], number_sizes[r->number], made)) return CODEC_DONE;
+  return are_there(from, r, count) ? sequence_read(from, r->number, count, made) : CODEC_UNUSUAL;
 }
 
 static codec_outcome read_message(payload *from, const codec *it, PyObject *message, unsigned depth) {
@@ -108,19 +126,29 @@ static codec_outcome read_rows(payload *from, const row *first, size_t count, Py
   return CODEC_DONE;
 }
 
-static codec_outcome read_whole(const codec *it, const uint8_t *data, size_t size, PyObject *viewed, PyObject **message) {
-  payload from = {data, HEADER_SIZE, size, viewed};
+static codec_outcome read_whole(const codec *it, payload from, PyObject **message) {
   const int collects = PyGC_Disable();
   PyObject *made = PyType_GenericAlloc(it->cls, 0);
   codec_outcome outcome = made ? read_message(&from, it, made, 0) : codec_failed();
+  if (outcome == CODEC_DONE && from.piece_count) outcome = CODEC_UNUSUAL;
   if (outcome == CODEC_DONE) *message = made;
   else Py_XDECREF(made);
   if (collects) PyGC_Enable();
   return outcome;
 }
 
+static codec_outcome read_payload(const codec *it, payload from, PyObject **message) {
+  codec_outcome outcome = read_whole(it, from, message);
+  return outcome == CODEC_UNUSUAL && arrays_try_again() ? read_whole(it, from, message) : outcome;
+}
+
 codec_outcome codec_read(codec *it, const uint8_t *data, size_t size, PyObject *viewed, PyObject **message) {
   if (size < HEADER_SIZE || data[0] != 0 || data[1] != 1) return CODEC_UNUSUAL;
-  codec_outcome outcome = read_whole(it, data, size, viewed, message);
-  return outcome == CODEC_UNUSUAL && arrays_try_again() ? read_whole(it, data, size, viewed, message) : outcome;
+  return read_payload(it, (payload){.data = data, .at = HEADER_SIZE, .end = size, .viewed = viewed}, message);
+}
+
+codec_outcome codec_read_pieces(codec *it, const codec_buffer *written, PyObject **message) {
+  const payload from = {.data = written->data, .at = HEADER_SIZE, .end = written->used, .pieces = written->pieces,
+                        .piece_count = written->piece_count};
+  return read_payload(it, from, message);
 }

@@ -39,16 +39,20 @@ static inline bool buffer_count(codec_buffer *buffer, size_t count, size_t more)
   return true;
 }
 
-/* What is read, header included, and how far; the object that sequences of numbers are views of, or NULL. */
+/* What is read, header included, and how far; the object that sequences of numbers are views of, or NULL; pieces that are
+ * not in the data, the next one first, and the size of those before it. */
 typedef struct {
   const uint8_t *data;
   size_t at, end;
   PyObject *viewed;
+  const codec_piece *pieces;
+  int piece_count;
+  size_t lent;
 } payload;
 
 /* Move on over so many bytes, and over the padding before them. NULL where they are not all there. */
 static inline const uint8_t *payload_take(payload *from, size_t size, size_t alignment) {
-  const size_t start = from->at + ((HEADER_SIZE - from->at) & (alignment - 1));
+  const size_t start = from->at + ((HEADER_SIZE - from->at - from->lent) & (alignment - 1));
   if (start > from->end || size > from->end - start) return NULL;
   from->at = start + size;
   return from->data + start;

@@ -32,7 +32,7 @@ static bool pin(message *self) {
 static codec_outcome encode_in_c(message *self, PyObject *object) {
   codec *it = self->type->codec;
   if (!it || !block_reserve(&self->memory, it->last_used + ROOM)) return CODEC_UNUSUAL;
-  self->written = (codec_buffer){.data = (uint8_t *)self->memory.data, .capacity = self->memory.capacity, .borrowed = true};
+  self->written = (codec_buffer){.data = (uint8_t *)self->memory.data, .capacity = self->memory.capacity, .borrowed = true, .large = CODEC_LARGE};
   codec_outcome outcome = codec_write(it, object, &self->written);
   return outcome == CODEC_DONE && !pin(self) ? CODEC_ERROR : outcome;
 }

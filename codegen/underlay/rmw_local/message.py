@@ -7,7 +7,7 @@ from functools import cached_property, partial
 from typing import Any
 
 from ifgen_runtime.codec import deserialize, serialize
-from ifgen_runtime.codec.choice import attached
+from ifgen_runtime.codec.choice import attached, packer
 from ifgen_runtime.errors import DeserializationError as DecodeError
 from ifgen_runtime.errors import SerializationError, as_raised
 from ifgen_runtime.message import generated_class
@@ -44,12 +44,16 @@ class MessageType:
         self.name = type_name(cls)
         self.serialize: Callable[[Any], bytes]
         self.deserialize: Callable[[bytes], Any]
+        self.pack: Callable[[Any], Any]
+        """For one reader of this type: bytes, or a parcel in their place, which `deserialize` takes once."""
         if hasattr(cls, "__serialize__"):
             # A generated class has its own functions. They are used directly, which saves one call for each
             # message.
             self.serialize, self.deserialize = attached(generated_class(cls))
+            self.pack = packer(generated_class(cls))
         else:
             self.serialize, self.deserialize = serialize, partial(deserialize, cls=cls)
+            self.pack = serialize
         self.drops = Drops(self.name)
         self.action: type[Any] | None = None  # that this is a part of
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 # One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages).
 # All readers share it. Bytes rather than objects: an unread message is never decoded, and every reader gets
 # its own object when it takes the message. Bytes that may be of another definition have an
-# Origin as well.
-Sample = tuple[bytes, int, int] | tuple[bytes, int, int, "Origin"]
+# Origin as well. A reader that is alone may get a parcel in place of the bytes (`MessageType.pack`).
+Sample = tuple[Any, int, int] | tuple[bytes, int, int, "Origin"]
 
 
 class _Closed(deque[Sample]):
@@ -44,6 +44,7 @@ class Reader(ReadySource, Endpoint):
         ReadySource.__init__(self)
         Endpoint.__init__(self, node, message_type, topic, qos)
         self._queue: deque[Sample] = deque(maxlen=qos.queue_length)
+        self.takes_parcels = True
         self.liveliness_changed = LivelinessChangedStatus()
         self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
         self._observer = observer.current()
@@ -74,6 +75,15 @@ class Reader(ReadySource, Endpoint):
         if self.deadline is not None:
             self.deadline.touch()
         self.notify()
+
+    def refuse_parcels(self) -> None:
+        """Get bytes from now on, except for messages that wait already. The caller holds no lock."""
+        domain = self.node.participant.domain
+        with domain.lock:
+            self.takes_parcels = False
+            topic = domain.topics.get(self.topic)
+            for writer in topic.writers if topic else ():
+                writer.settle_route()
 
     def take(self) -> Sample | None:
         """Remove and return the oldest message, None if there is none."""

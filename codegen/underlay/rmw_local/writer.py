@@ -16,6 +16,8 @@ from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC
 from rmw_local.status import DeadlineStatus, LivelinessLostStatus
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
     from rmw_local.origin import Origin
@@ -31,6 +33,7 @@ class Writer(Endpoint):
     """
 
     role = "publisher"
+    _keeps = False  # whether readers that come later get what is published now
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         super().__init__(node, message_type, topic, qos)
@@ -43,22 +46,26 @@ class Writer(Endpoint):
         self._leases: dict[Reader, Lease] = {}  # of readers that want to know; replaced, never changed
         self._timed = self.deadline is not None or self._manual
         self._numbers = itertools.count(1)
-        self._serialize = message_type.serialize
+        # How to serialise for these readers: one thing, so that no other reader gets what was made for one.
+        self._route: tuple[Callable[[Any], Any], tuple[Reader | Marking, ...]] = (message_type.serialize, ())
         self._observer = observer.current()
 
     def publish(self, message: Any) -> None:
         """Deliver a message of the writer's class; refuses field values that cannot be sent, read or not."""
+        serialize, readers = self._route
         try:
-            data = self._serialize(message)
+            data = serialize(message)
         except SerializationError as error:
             raise as_raised(error) from None
-        self.publish_bytes(data)
+        self._deliver(data, readers)
 
     def publish_bytes(self, data: bytes) -> None:
         """Deliver a serialised message of the writer's class."""
+        self._deliver(data, self.readers)
+
+    def _deliver(self, data: Any, readers: tuple[Reader | Marking, ...]) -> None:
         if self._timed:
             self._note_publication()
-        readers = self.readers
         sample = (data, timing.time_ns(), next(self._numbers))
         for reader in readers:
             reader.accept(sample)
@@ -85,6 +92,7 @@ class Writer(Endpoint):
             reader.liveliness_changed.watch(lease)
             self._leases = {**self._leases, reader: lease}
         self.readers = (*self.readers, self._receiver(reader, origin))
+        self.settle_route()
 
     def _receiver(self, reader: Reader, origin: Origin | None) -> Reader | Marking:
         """The reader, or what stands for it."""
@@ -105,6 +113,7 @@ class Writer(Endpoint):
         """Deliver to a reader no longer. Called with the domain's lock held."""
         receiver = self._marking.get(reader, reader)
         self.readers = tuple(known for known in self.readers if known is not receiver)
+        self.settle_route()
         if receiver is not reader:
             self._marking = {each: known for each, known in self._marking.items() if each is not reader}
         lease = self._leases.get(reader)
@@ -112,6 +121,16 @@ class Writer(Endpoint):
             self._leases = {known: each for known, each in self._leases.items() if known is not reader}
             reader.liveliness_changed.forget(lease)
             lease.end()
+
+    def settle_route(self) -> None:
+        """Choose how to serialise for the readers that there are now. Called with the domain's lock held."""
+        readers, kind = self.readers, self.message_type
+        serialize = kind.serialize
+        if len(readers) == 1 and not self._keeps:
+            (reader,) = readers
+            if not isinstance(reader, Marking) and reader.takes_parcels and reader.message_type is kind:
+                serialize = kind.pack
+        self._route = serialize, readers
 
     def _doubt(self) -> None:
         """Mark all messages, to readers that there are and to those to come."""
@@ -121,6 +140,7 @@ class Writer(Endpoint):
             if self._own_origin is None:
                 self._own_origin = Origin(f"topic '{self.topic}'", self.node, is_raw=True)
                 self.readers = tuple(self._receiver(known.end, None) for known in self.readers)
+                self.settle_route()
 
     def _note_publication(self) -> None:
         if self.deadline is not None:
@@ -135,13 +155,15 @@ class DurableWriter(Writer):
     nothing and gets nothing twice. Lock order: the domain's lock before it.
     """
 
+    _keeps = True
+
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         super().__init__(node, message_type, topic, qos)
         self._lock = threading.Lock()
         self._history: deque[Sample] = deque(maxlen=qos.queue_length)
 
-    def publish_bytes(self, data: bytes) -> None:
-        """Keep and deliver."""
+    def _deliver(self, data: Any, readers: tuple[Reader | Marking, ...]) -> None:
+        """Keep and deliver, to whoever is there once the lock is held."""
         if self._timed:
             self._note_publication()
         with self._lock:

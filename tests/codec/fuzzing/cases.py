@@ -10,7 +10,8 @@ from typing import Any
 
 from ifgen_runtime import deserialize, serialize
 from ifgen_runtime.codec import decoding, encoding
-from ifgen_runtime.codec.choice import chosen
+from ifgen_runtime.codec.choice import chosen, packer
+from ifgen_runtime.message import generated_class
 from ifgen_runtime.views import decoders
 
 from . import objects, payloads
@@ -94,6 +95,8 @@ class Cases:
             others.append(("the generated function", encode))
         if rng.randrange(_SLOW_ONE_IN) == 0 and not mutator.is_acting:
             others.append(("encode_any", encoding.encode_any))
+        if NATIVE and not mutator.is_acting:
+            _same("a parcel", (data, seed), first[0], outcome(_through_parcel, mutator.message))
         for what, function in others:
             again = mutator
             if mutator.is_acting:  # it has changed
@@ -136,6 +139,21 @@ class Cases:
         """A message of any class."""
         cls = self._classes[rng.choice(self._names)]
         return cls()
+
+
+def _through_parcel(message: Any) -> Any:
+    """The bytes of a message, after all its arrays were handed over in a parcel."""
+    cls = generated_class(type(message))
+    before = NATIVE.codec_large_in_parcels(0)
+    try:
+        parcel = packer(cls)(message)
+    finally:
+        NATIVE.codec_large_in_parcels(before)
+    data = bytes(parcel)
+    handed_over = cls.__deserialize__(parcel)
+    if exact(handed_over) != exact(cls.__deserialize__(data)):
+        raise Disagreement(f"a parcel of {data!r} became {handed_over!r}")
+    return data
 
 
 def _left_to_python() -> int:

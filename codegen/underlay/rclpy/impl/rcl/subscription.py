@@ -51,6 +51,7 @@ class Subscription(SourceHandle, EndpointHandle):
 
     def use_views(self) -> None:
         """Leave sequences of numbers in the bytes that all subscriptions share, from now on."""
+        self._reader.refuse_parcels()
         self._deserialize = self._kind.deserialize_views
 
     def get_topic_name(self) -> str:
@@ -74,8 +75,10 @@ class Subscription(SourceHandle, EndpointHandle):
         if self._destroyed:
             raise RCLError("failed to take message from subscription: subscription pointer is invalid")
         sample: Any = self._take()
-        if sample is None or raw:
-            return sample and sample[:3]  # type: ignore[no-any-return]
+        if sample is None:
+            return None
+        if raw:
+            return self._raw(sample)
         try:
             data, stamp, number = sample
         except ValueError:  # it is marked
@@ -85,6 +88,13 @@ class Subscription(SourceHandle, EndpointHandle):
         except DecodeError:
             self._drops.add()
             return None
+
+    def _raw(self, sample: tuple[Any, ...]) -> Taken:
+        """A message as bytes, as all that follow will be."""
+        if self._reader.takes_parcels:
+            self._reader.refuse_parcels()
+        data, stamp, number = sample[:3]
+        return bytes(data), stamp, number
 
     def _take_with_care(self, data: bytes, stamp: int, number: int, origin: Origin) -> Taken | None:
         """Read bytes that may be of another definition."""
