@@ -42,8 +42,8 @@ class TypeDescription:
 
 
 @dataclass(frozen=True, slots=True)
-class _Endpoint:
-    """Somebody on a topic who may know its type."""
+class Endpoint:
+    """A node that may know a type, because it uses it."""
 
     node: str
     type_name: str
@@ -70,13 +70,22 @@ def describe(node: Any, topic: str, *, timeout: float = 5.0, type_hash: str | No
         raise DescribeError(f"nobody describes the type of '{topic}': {'; '.join(answer)}")
 
 
-def _endpoints(node: Any, topic: str, type_hash: str | None) -> list[_Endpoint]:
+def answers(node: Any, endpoints: Iterable[Endpoint], timeout: float) -> dict[Endpoint, TypeDescription]:
+    """What other nodes say of types that they use. All are asked together, each once.
+
+    Nodes that do not answer within `timeout` [s], or refuse, are left out.
+    """
+    with _asking(node, timeout) as asking:
+        return asking.ask_all(endpoints)
+
+
+def _endpoints(node: Any, topic: str, type_hash: str | None) -> list[Endpoint]:
     """The endpoints of a topic, one for each node and type; publishers come first."""
     infos = (*node.get_publishers_info_by_topic(topic), *node.get_subscriptions_info_by_topic(topic))
-    found: dict[_Endpoint, None] = {}
+    found: dict[Endpoint, None] = {}
     for info in infos:
         name = f"{info.node_namespace.rstrip('/')}/{info.node_name}"
-        endpoint = _Endpoint(name, info.topic_type, str(info.topic_type_hash))
+        endpoint = Endpoint(name, info.topic_type, str(info.topic_type_hash))
         if type_hash in {None, endpoint.type_hash}:
             found[endpoint] = None
     return list(found)
@@ -127,14 +136,14 @@ class _Asking:
             self._executor.spin_once(timeout_sec=min(left, _POLL))
             yield
 
-    def wait_for(self, look: Callable[[], list[_Endpoint]]) -> list[_Endpoint]:
+    def wait_for(self, look: Callable[[], list[Endpoint]]) -> list[Endpoint]:
         """The first result that is not empty; an empty one if there is none in time."""
         for _ in self._looks():
             if found := look():
                 return found
         return []
 
-    def ask(self, endpoints: Iterable[_Endpoint]) -> TypeDescription | list[str]:
+    def ask(self, endpoints: Iterable[Endpoint]) -> TypeDescription | list[str]:
         """The first answer, or the reasons why there is none. All nodes are asked together, each once."""
         questions = [_Question(self._node, self._type, endpoint) for endpoint in endpoints]
         try:
@@ -150,11 +159,28 @@ class _Asking:
             for question in questions:
                 question.end()
 
+    def ask_all(self, endpoints: Iterable[Endpoint]) -> dict[Endpoint, TypeDescription]:
+        """The answers that come in time."""
+        questions = {endpoint: _Question(self._node, self._type, endpoint) for endpoint in endpoints}
+        found: dict[Endpoint, TypeDescription] = {}
+        for _ in self._looks():
+            for endpoint, question in tuple(questions.items()):
+                if (answer := question.look()) is not None:
+                    question.end()
+                    del questions[endpoint]
+                    if isinstance(answer, TypeDescription):
+                        found[endpoint] = answer
+            if not questions:
+                break
+        for question in questions.values():
+            question.end()
+        return found
+
 
 class _Question:
     """A question to one node."""
 
-    def __init__(self, node: Any, type_: Any, endpoint: _Endpoint) -> None:
+    def __init__(self, node: Any, type_: Any, endpoint: Endpoint) -> None:
         self._node = node
         self._type = type_
         self._endpoint = endpoint
@@ -197,7 +223,7 @@ class _Question:
             self._node.destroy_client(self._client)
 
 
-def _answer(endpoint: _Endpoint, response: Any) -> TypeDescription | str:
+def _answer(endpoint: Endpoint, response: Any) -> TypeDescription | str:
     if not response.successful:
         return f"{endpoint.node} says: {response.failure_reason or 'no'}"
     sources = tuple((s.type_name, s.encoding, s.raw_file_contents) for s in response.type_sources)

@@ -26,10 +26,14 @@ _MOST_TEXT: Final = 2**17
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """A definition of a type, with all that it holds."""
+    """A definition of a type, with all that it holds.
+
+    `place` counts the places where one that is installed was not found; the first ones are the project's.
+    """
 
     described: Described
     registry: Registry
+    place: int = 0
 
 
 def of_sources(side: Mapping[str, Any], type_name: str, node: str | None) -> Known | None:
@@ -60,10 +64,14 @@ def of_document(side: Mapping[str, Any]) -> Known | None:
 
 
 class Installed:
-    """What is installed, as far as it can be found in time: `until` is a moment of `time.monotonic`."""
+    """What is installed, as far as it can be found in time.
 
-    def __init__(self, until: float) -> None:
+    `until` is a moment of `time.monotonic`. `include` are folders besides those of the configuration.
+    """
+
+    def __init__(self, until: float, include: Sequence[Path] = ()) -> None:
         self._until = until
+        self._include = include
         self._found: dict[tuple[str, str], Known | None] = {}
 
     def definition(self, type_name: str, type_hash: str) -> Known | None:
@@ -91,9 +99,9 @@ class Installed:
     @cached_property
     def _settings(self) -> Settings:
         try:
-            return settle()
+            return settle(include=self._include)
         except (UsageError, OSError):
-            return settle(isolated=True)
+            return settle(include=self._include, isolated=True)
 
     @cached_property
     def _with_files(self) -> list[Place]:
@@ -101,7 +109,7 @@ class Installed:
 
     def _definitions(self, type_name: str, type_hash: str) -> Iterator[Known]:
         every = [*self._with_files, *places.with_modules(self._settings)]
-        for place in every:
+        for number, place in enumerate(every):
             if time.monotonic() > self._until:
                 return
             try:
@@ -109,10 +117,10 @@ class Installed:
             except (InputError, OSError):
                 continue
             if registry is not None and (known := _fitting(type_name, type_hash, registry)):
-                yield known
-        yield from self._locked(type_name, type_hash)
+                yield replace(known, place=number)
+        yield from self._locked(type_name, type_hash, len(every))
 
-    def _locked(self, type_name: str, type_hash: str) -> Iterator[Known]:
+    def _locked(self, type_name: str, type_hash: str, place: int) -> Iterator[Known]:
         from ifgen.evolution import lock_file  # its parser, which most searches do without
 
         file = self._settings.file
