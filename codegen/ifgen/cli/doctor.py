@@ -1,4 +1,4 @@
-"""A report on this machine: Python, transports, type support, and how to get those that are missing."""
+"""`ifgen doctor`: what this machine has, and how to get the rest; or what is wrong with a graph."""
 
 from __future__ import annotations
 
@@ -13,9 +13,17 @@ from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Literal
+
+import click
 
 from ifgen import resources
+from ifgen.cli import terminal
+from ifgen.cli.arguments import format_ as format_option
+from ifgen.cli.arguments import include as include_option
 from ifgen.config import installing
+
+# Late imports: only `--graph` needs these.
 
 _TIME_LIMIT = 60.0  # [s] for asking real rclpy
 _LOG_HEAD = re.compile(r"^(\[[^]]*\] ?)+: ")  # level, time and name of who says it
@@ -43,6 +51,63 @@ except TypeSupportError as error:
 _OK = "ok "
 _WITH_WHEELS = ("jazzy", "kilted")
 _TESTED = _WITH_WHEELS  # the native tests run on the wheels
+
+
+@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.option("--graph", is_flag=True, help="Look at running nodes instead: whose definitions differ?")
+@click.option(
+    "--run",
+    "programs",
+    metavar="PROGRAM",
+    multiple=True,
+    help="With --graph: run this program meanwhile: 'talker.py', '-m package.node'; may be repeated.",
+)
+@click.option(
+    "--transport",
+    type=click.Choice(["local", "rclpy", "auto"]),
+    help="With --graph: where to look, as for `ifgen graph`.",
+)
+@include_option
+@format_option
+def doctor(
+    graph: bool,
+    programs: tuple[str, ...],
+    transport: Literal["local", "rclpy", "auto"] | None,
+    include: tuple[Path, ...],
+    format_: str,
+) -> int:
+    """Report what this machine has, and how to install the rest.
+
+    With --graph, look at a running system, and report each topic, service and action whose nodes have
+    different definitions of its type, with what differs. Exits with 1 if there is one.
+    """
+    if graph:
+        return _graph_doctor(programs, transport or "auto", include, format_)
+    if programs or transport or include or format_ != "text":
+        raise click.UsageError("These options need --graph", click.get_current_context())
+    for finding in list(examine()):  # all at once: some take a while
+        print(f"{finding.subject + ':':17}{finding.found}")
+        if finding.advice:
+            print(f"{'':17}-> {finding.advice}")
+    return 0
+
+
+def _graph_doctor(
+    programs: tuple[str, ...],
+    transport: Literal["local", "rclpy", "auto"],
+    include: tuple[Path, ...],
+    format_: str,
+) -> int:
+    import shlex
+
+    from ifgen.cli.evolution import graph_doctor
+    from ifgen.running import run as running
+
+    words = [running.split(shlex.split(program))[0] for program in programs]
+    seen = graph_doctor.observed(words, transport)
+    found = list(graph_doctor.findings(seen, include))
+    nodes = terminal.counted(len(seen.nodes), "node")
+    return terminal.print_findings(found, format_, f"{nodes}: all definitions agree")
 
 
 @dataclass(frozen=True, slots=True)

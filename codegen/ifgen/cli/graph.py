@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import shlex
 import sys
-import tempfile
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -126,18 +126,11 @@ def _described(paths: Sequence[Path], include: Sequence[Path]) -> Graph:
 
 
 def _running(programs: Sequence[str], transport: Literal["local", "rclpy", "auto"]) -> Graph:
-    from ifgen.config.settings import settle
     from ifgen.graph.model import of_endpoints
     from ifgen.observing import graph_observation
+    from ifgen.observing.observed import observe
     from ifgen.running import run
 
     words = [run.split(shlex.split(program))[0] for program in programs]
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "graph.json"
-        with run.stdout_to_stderr():
-            code = run.run([*words, graph_observation.command(file, len(words))], transport, settle().output)
-        seen = graph_observation.read(file)
-    if seen is None:
-        message = f"the graph could not be observed: the programs ended with exit code {code}"
-        raise UsageError([Diagnostic("no-graph", message, help="run them with `ifgen run` to see why")])
-    return of_endpoints(*seen)
+    observer = partial(graph_observation.command, nodes=len(words))
+    return of_endpoints(*observe(words, observer, graph_observation.read, transport, rule="no-graph"))

@@ -88,6 +88,7 @@ class _Commands(click.Group):
             "completion",
             "demo",
             "diff",
+            "doctor",
             "generate",
             "graph",
             "init",
@@ -258,66 +259,6 @@ def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, prog
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
     return running.run(programs, transport, settings.output)
-
-
-@commands.command()
-@click.option("--graph", is_flag=True, help="Look at running nodes instead: whose definitions differ?")
-@click.option(
-    "--run",
-    "programs",
-    metavar="PROGRAM",
-    multiple=True,
-    help="With --graph: run this program meanwhile: 'talker.py', '-m package.node'; may be repeated.",
-)
-@click.option(
-    "--transport",
-    type=click.Choice(["local", "rclpy", "auto"]),
-    help="With --graph: where to look, as for `ifgen graph`.",
-)
-@include_option
-@format_option
-def doctor(
-    graph: bool,
-    programs: tuple[str, ...],
-    transport: Literal["local", "rclpy", "auto"] | None,
-    include: tuple[Path, ...],
-    format_: str,
-) -> int:
-    """Report what this machine has, and how to install the rest.
-
-    With --graph, look at a running system, and report each topic, service and action whose nodes have
-    different definitions of its type, with what differs. Exits with 1 if there is one.
-    """
-    if graph:
-        return _graph_doctor(programs, transport or "auto", include, format_)
-    if programs or transport or include or format_ != "text":
-        raise click.UsageError("These options need --graph", click.get_current_context())
-    from ifgen.cli import doctor as examining
-
-    findings = list(examining.examine())
-    for finding in findings:
-        print(f"{finding.subject + ':':17}{finding.found}")
-        if finding.advice:
-            print(f"{'':17}-> {finding.advice}")
-    return 0
-
-
-def _graph_doctor(
-    programs: tuple[str, ...],
-    transport: Literal["local", "rclpy", "auto"],
-    include: tuple[Path, ...],
-    format_: str,
-) -> int:
-    import shlex
-
-    from ifgen.cli.evolution import graph_doctor
-    from ifgen.running import run as running
-
-    words = [running.split(shlex.split(program))[0] for program in programs]
-    seen = graph_doctor.observed(words, transport)
-    found = list(graph_doctor.findings(seen, include))
-    nodes = terminal.counted(len(seen.nodes), "node")
-    return terminal.print_findings(found, format_, f"{nodes}: all definitions agree")
 
 
 def _looked_at(findings: Findings) -> str:

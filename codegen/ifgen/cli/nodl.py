@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -102,20 +102,11 @@ def schema() -> int:
 
 
 def _seen(programs: list[list[str]], node: str | None, transport: Literal["local", "rclpy", "auto"]) -> Seen:
-    from ifgen.config.settings import settle
     from ifgen.observing import node_observation
-    from ifgen.running import run
+    from ifgen.observing.observed import observe
 
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "node.json"
-        observer = node_observation.command(file, len(programs), node)
-        with run.stdout_to_stderr():
-            code = run.run([*programs, observer], transport, settle().output)
-        seen = node_observation.read(file)
-    if seen is None:
-        message = f"the node could not be observed: the programs ended with exit code {code}"
-        raise UsageError([Diagnostic("no-node", message, help="run them with `ifgen run` to see why")])
-    return seen
+    observer = partial(node_observation.command, nodes=len(programs), node=node)
+    return observe(programs, observer, node_observation.read, transport, rule="no-node")
 
 
 def _unclear(nodes: tuple[str, ...], wanted: str | None) -> Diagnostic:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any, Final, Literal
 
@@ -17,7 +17,7 @@ from ifgen.evolution.explaining.explanation import short
 from ifgen.observing import definitions_observation
 from ifgen.observing.definitions_observation import Seen
 from ifgen.observing.definitions_seen import Disagreement, User, Version, disagreements, without_hash
-from ifgen.running import run
+from ifgen.observing.observed import observe
 
 _PATIENCE: Final = 10.0
 """Seconds to look for definitions that are installed: somebody waits for the command."""
@@ -31,15 +31,8 @@ _FAR: Final = 1_000
 
 def observed(programs: Sequence[list[str]], transport: Literal["local", "rclpy", "auto"]) -> Seen:
     """What nodes use while these programs run. Raises UsageError if the programs end too early."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "definitions.json"
-        observer = definitions_observation.command(file, len(programs))
-        with run.stdout_to_stderr():
-            code = run.run([*programs, observer], transport, settle().output)
-        seen = definitions_observation.read(file)
-    if seen is None:
-        message = f"the graph could not be observed: the programs ended with exit code {code}"
-        raise UsageError([Diagnostic("no-graph", message, help="run them with `ifgen run` to see why")])
+    observer = partial(definitions_observation.command, nodes=len(programs))
+    seen = observe(programs, observer, definitions_observation.read, transport, rule="no-graph")
     if not seen.nodes:
         advice = "name a program, such as `--run talker.py`"
         raise UsageError([Diagnostic("no-node", "no node is running", help=advice)])
@@ -106,7 +99,7 @@ class _Finder:
 def _ours(known: Mapping[Version, tuple[Known | None, int]], disagreement: Disagreement) -> Version:
     """The version that others are compared with: the project's, else that of most nodes, else of readers."""
     users = disagreement.versions
-    return min(reversed(known), key=lambda version: (known[version][1], -len(users[version])))
+    return min(reversed([*known]), key=lambda version: (known[version][1], -len(users[version])))
 
 
 def _unknown(version: Version) -> str:
