@@ -57,8 +57,9 @@ def as_plain_text(diagnostics: Iterable[Diagnostic], width: int = 80) -> str:
 
 
 def _narrow(diagnostic: Diagnostic, width: int) -> Diagnostic:
-    lead = " " * len(f"{diagnostic.severity}[{diagnostic.rule}]: ")
-    return replace(diagnostic, message=wrapped(lead + diagnostic.message, width, 2).lstrip())
+    before = len(f"{diagnostic.severity}[{diagnostic.rule}]: ")
+    # Together with what comes before it, the first word stays where it is, however long it is.
+    return replace(diagnostic, message=wrapped("x" * before + diagnostic.message, width, 2)[before:])
 
 
 def summary(diagnostics: Sequence[Diagnostic]) -> str:

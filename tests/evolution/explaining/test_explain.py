@@ -214,7 +214,7 @@ def test_services_and_actions(name: str, old: str, new: str, said: str, project:
     text = explain(asdict(met(made(old, name), made(new, name), kind=kind, roles=roles, policy="refuse")))
     assert said in text
     assert "on_type_mismatch is refuse: no requests and responses pass between the two\n" in text
-    assert ("ifgen adapt" in text) == (kind == "service")
+    assert f"\n      ifgen adapt {name} --from RIHS01_" in text
 
 
 def test_a_part_of_a_service_is_found_in_the_file_of_the_whole(project: Path) -> None:
@@ -226,6 +226,16 @@ def test_a_part_of_a_service_is_found_in_the_file_of_the_whole(project: Path) ->
     mismatch = met(theirs, mine, kind="service", roles=("service server", "service client"))
     text = explain(asdict(mismatch))
     assert " --> interfaces/robot_msgs/srv/SetMode.srv:1:1\n" in text
+    assert "\n      ifgen adapt robot_msgs/srv/SetMode --from RIHS01_a16c65e4c01407e2\n" in text
+
+
+def test_a_part_that_ros_derives_is_nothing_to_adapt(project: Path) -> None:
+    name = "robot_msgs/action/Walk"
+    both = (f"int8 a\n---\nint8 b\n---\n{kind} c\n" for kind in ("int8", "int16"))
+    theirs, mine = (made(text, name).Impl.FeedbackMessage for text in both)
+    text = explain(asdict(met(theirs, mine, kind="action", roles=("action server", "action client"))))
+    assert "robot_msgs/action/Walk_FeedbackMessage.feedback.c was" in text
+    assert text.endswith("help: use the same definition in both nodes")
 
 
 @pytest.mark.parametrize(
@@ -238,6 +248,26 @@ def test_a_part_of_a_service_is_found_in_the_file_of_the_whole(project: Path) ->
 def test_a_publisher_says_what_its_policy_does(policy: str, said: str, project: Path) -> None:
     text = explain(asdict(met(made(OLD), made(NEW), policy=policy, roles=("subscription", "publisher"))))
     assert said in text
+
+
+def test_a_part_of_a_service_that_nobody_can_send_says_why(project: Path) -> None:
+    name = "robot_msgs/srv/SetMode"
+    theirs, mine = (made(f"{kind} mode\n---\nbool success\n", name).Request for kind in ("uint8", "uint16"))
+    mismatch = met(theirs, mine, kind="service", roles=("service server", "service client"))
+    said = "what differs is unknown: nodes cannot be asked for one part of a service, and\nnone"
+    assert said in explain(without_definition(mismatch))
+
+
+def test_bytes_that_mean_the_same_are_no_garbage(project: Path) -> None:
+    text = explain(asdict(met(made("float32 volts\n"), made("float32 voltage\n"))))
+    assert "messages still flow as far as ROS lets them, and their\nbytes mean the same\n" in text
+
+
+def test_a_long_name_does_not_push_words_past_the_margin(project: Path) -> None:
+    theirs, mine = (made(f"{kind} {'x' * 70}\n") for kind in ("int8", "int16"))
+    (line, after) = explain(asdict(met(theirs, mine))).partition("warning")[2].splitlines()[:2]
+    assert line.endswith("x")
+    assert after == "  was `int8`, and is `int16`"
 
 
 def test_many_changes_are_counted(project: Path) -> None:

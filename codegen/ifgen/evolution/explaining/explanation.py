@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from ifgen.diagnostics import Diagnostic
+from ifgen.evolution.edits import Category
 from ifgen.evolution.explaining.definitions import Installed, of_document, of_sources
 from ifgen.evolution.explaining.differences import Differences, differences
 
@@ -15,6 +16,9 @@ PATIENCE: Final = 0.5
 """Seconds for a search of what is installed: a node waits meanwhile."""
 
 _SHOWN: Final = 5
+_NEVER_SENT: Final = ("_Request", "_Response")
+"""What a node sends by the hash of the whole service only, which the graph of ROS does not tell."""
+
 _DIGITS: Final = len("RIHS01_") + 16
 
 
@@ -52,9 +56,10 @@ def explained(mismatch: Mapping[str, Any]) -> Explanation:
         or of_document(mine)
     )
     found = differences(old, new, installed) if old and new else Differences()
-    remarks = [_unknown(side) for side, known in ((theirs, old), (mine, new)) if known is None]
+    remarks = [_unknown(side, type_name) for side, known in ((theirs, old), (mine, new)) if known is None]
     remarks += filter(None, [found.remark])
-    remarks.append(_what_happens(mismatch))
+    keeps_bytes = bool(found.changes) and all(Category.WIRE not in change.breaks for change in found.changes)
+    remarks.append(_what_happens(mismatch, keeps_bytes=keeps_bytes))
     shown, left_out = found.changes[:_SHOWN], len(found.changes[_SHOWN:])
     return Explanation(head(mismatch), shown, left_out, tuple(remarks), _command(mismatch))
 
@@ -74,17 +79,22 @@ def short(type_hash: str) -> str:
     return type_hash[:_DIGITS]
 
 
-def _unknown(side: Mapping[str, Any]) -> str:
+def _unknown(side: Mapping[str, Any], type_name: str) -> str:
     """Why a definition is not known, and how to get it."""
-    said = "says what does not fit its hash" if side["definition"] else "did not send its definition"
+    if side["definition"]:
+        said = f"{side['node']} says what does not fit its hash"
+    elif type_name.endswith(_NEVER_SENT):
+        said = "nodes cannot be asked for one part of a service"
+    else:
+        said = f"{side['node']} did not send its definition"
     return (
-        f"what differs is unknown: {side['node']} {said}, and none with this hash is installed. To see it, "
+        f"what differs is unknown: {said}, and none with this hash is installed. To see it, "
         "name the folder that has it in `include` of [tool.ifgen], or put the package that was generated "
         "from it on PYTHONPATH"
     )
 
 
-def _what_happens(mismatch: Mapping[str, Any]) -> str:
+def _what_happens(mismatch: Mapping[str, Any], *, keeps_bytes: bool) -> str:
     """What is done with messages."""
     mine, theirs = mismatch["mine"]["node"], mismatch["theirs"]["node"]
     what = "messages" if mismatch["kind"] == "topic" else "requests and responses"
@@ -96,11 +106,17 @@ def _what_happens(mismatch: Mapping[str, Any]) -> str:
         case "refuse":
             how = f"no {what} pass between the two"
         case _:
-            how = f"{what} still flow as far as ROS lets them, and may be garbage"
+            result = "their bytes mean the same" if keeps_bytes else "may be garbage"
+            how = f"{what} still flow as far as ROS lets them, and {result}"
     return f"on_type_mismatch is {mismatch['policy']}: {how}"
 
 
 def _command(mismatch: Mapping[str, Any]) -> str | None:
-    if mismatch["policy"] == "adapt" or mismatch["kind"] == "action":
+    """What writes an adapter; None if there is one, or if the hash is of a part that ROS derives."""
+    type_name = mismatch["type_name"]
+    if mismatch["kind"] == "service":
+        type_name = type_name.removesuffix("_Request").removesuffix("_Response")
+    is_derived = mismatch["kind"] == "action" and "_" in type_name.rpartition("/")[2]
+    if mismatch["policy"] == "adapt" or is_derived:
         return None
-    return f"ifgen adapt {mismatch['type_name']} --from {short(mismatch['theirs']['type_hash'])}"
+    return f"ifgen adapt {type_name} --from {short(mismatch['theirs']['type_hash'])}"
