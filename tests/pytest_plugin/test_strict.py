@@ -230,3 +230,25 @@ def test_definitions_that_differ_unless_they_are_adapted(pytester: pytest.Pytest
     result = pytester.runpytest_subprocess(f"--transport={transport}", "--ros-strict")
     result.assert_outcomes(passed=2, errors=1)
     result.stdout.fnmatch_lines(["ros_strict: *'/path'*"])
+
+
+LIVE = """
+import pytest
+from ifgen.dynamic import class_from_text
+from rclpy.parameter import Parameter
+
+
+@pytest.mark.parametrize("policy", ["warn", "refuse"])
+def test_a_pair(ros_node, policy):
+    one, other = (class_from_text("acme_msgs/msg/Speed", f"float{bits} value") for bits in (32, 64))
+    override = Parameter("on_type_mismatch", value=policy)
+    ros_node("receiver", parameter_overrides=[override]).create_subscription(one, "speed", print, 1)
+    ros_node("sender").create_publisher(other, "speed", 1)
+"""
+
+
+def test_a_pair_whose_definitions_differ(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(LIVE)
+    result = pytester.runpytest_subprocess("--transport=local", "--ros-strict")
+    result.assert_outcomes(passed=2, errors=2)
+    result.stdout.fnmatch_lines(["ros_strict: topic '/speed': /sender (publisher)*"] * 2)

@@ -41,7 +41,7 @@ def meet_on_topic(writer: Writer, reader: Reader) -> tuple[Encounter, Origin | N
 
     Called with the domain's lock held, as is `meet_on_service`.
     """
-    wanted = policy = reader.node.on_type_mismatch
+    wanted = policy = _policy(reader, writer)
     adapter = None
     if wanted == _ADAPT:
         adapter = _adapter(writer.message_type, reader.message_type)
@@ -57,9 +57,9 @@ def meet_on_service(client: ServiceClient, server: ServiceServer) -> tuple[Encou
     """
     sides: list[tuple[ServiceEndpoint, ServiceEndpoint]] = [(server, client), (client, server)]
     for mine, theirs in sides:
-        if mine.node.on_type_mismatch == _REFUSE:
+        if _policy(mine, theirs) == _REFUSE:
             return Encounter(mine, theirs, _REFUSE, _REFUSE), None
-    adapting = [(mine, theirs) for mine, theirs in sides if mine.node.on_type_mismatch == _ADAPT]
+    adapting = [(mine, theirs) for mine, theirs in sides if _policy(mine, theirs) == _ADAPT]
     for mine, theirs in adapting:
         ends = _adapted(mine, theirs)
         if ends is not None:
@@ -68,6 +68,11 @@ def meet_on_service(client: ServiceClient, server: ServiceServer) -> tuple[Encou
         return Encounter(*adapting[0], _ADAPT, _REFUSE), None
     ends = (Marking(client, _origin(server)), Marking(server, _origin(client)))
     return Encounter(server, client, _WARN, _WARN), ends
+
+
+def _policy(mine: Party, theirs: Party) -> str:
+    """The policy of a node; only to warn of a class without a type hash, whose definition nobody knows."""
+    return mine.node.on_type_mismatch if mine.kind.type_hash and theirs.kind.type_hash else _WARN
 
 
 def _adapted(mine: ServiceEndpoint, theirs: ServiceEndpoint) -> Ends | None:

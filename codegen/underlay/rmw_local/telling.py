@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ifgen_runtime.adapters import short
-from ifgen_runtime.mismatch.explanation import explanation, in_one_line
+from ifgen_runtime.mismatch.explanation import explanation
 from ifgen_runtime.mismatch.listeners import tell
 from ifgen_runtime.mismatch.sides import Mismatch, Side, definition_of
 from ifgen_runtime.mismatch.told import Say
@@ -20,6 +19,7 @@ if TYPE_CHECKING:
     from rmw_local.encounter import Encounter, Party
 
 _ACTION = "/_action/"
+_SHOWN = len("RIHS01_") + 16
 _PARTS = ("SendGoalService", "GetResultService", "FeedbackMessage")
 
 
@@ -40,22 +40,18 @@ def _tell(mismatch: Mismatch, encounter: Encounter) -> None:
     if say is Say.NO_MORE:
         text = f"{mismatch.kind} '{mismatch.name}': more endpoints differ, which is not said any more"
     else:
-        text = _explained(mismatch)
+        text = explanation(mismatch)
         if encounter.wanted != encounter.policy:
-            text += f"\nNo adapter is registered, so nothing is exchanged. {_advice(mismatch)}"
+            text += _missing(mismatch, text)
     report.say(node, text, is_warning=mismatch.policy != "adapt")
 
 
-def _explained(mismatch: Mismatch) -> str:
-    try:
-        return explanation(mismatch)
-    except Exception:  # whatever is wrong with the toolkit, nodes are made
-        return in_one_line(mismatch)
-
-
-def _advice(mismatch: Mismatch) -> str:
-    command = f"ifgen adapt {mismatch.type_name} --from {short(mismatch.theirs.type_hash)}"
-    return f"`{command}` writes one, and importing it before the node is made registers it."
+def _missing(mismatch: Mismatch, said: str) -> str:
+    """The reason why a node refuses that is to adapt; `said` may have the command that helps."""
+    adapter = "adapter" if mismatch.kind == "topic" else "adapter with `downgrade`"
+    command = f"ifgen adapt {mismatch.type_name} --from {mismatch.theirs.type_hash[:_SHOWN]}"
+    hint = "" if command in said else f": `{command}` writes one"
+    return f"\n{mismatch.mine.node} is to adapt, but no {adapter} was registered when the two met{hint}"
 
 
 class _Subject:
