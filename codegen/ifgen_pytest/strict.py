@@ -29,7 +29,7 @@ class StrictCheck:
         self._told: list[BaseException] = []
         self._undo: list[tuple[Any, str, Any]] = []
         self._findings = TransportRecord()
-        self._mismatches: list[Any] = []  # pairs of endpoints whose definitions differ
+        self._mismatches: dict[Any, Any] = {}  # pairs of endpoints whose definitions differ
         self._exchange(threading, "excepthook", self._on_thread_error)
         self._watch_rclpy()
 
@@ -61,7 +61,7 @@ class StrictCheck:
             listeners = importlib.import_module("ifgen_runtime.mismatch.listeners")
         except ImportError:
             return
-        self._exchange(listeners, "heard", self._mismatches.append)
+        self._exchange(listeners, "heard", self._on_mismatch)
 
     def _watch_actions(self) -> None:
         """Note what goals raise: an action server only logs it, and aborts the goal."""
@@ -104,12 +104,11 @@ class StrictCheck:
         return "\n".join(f"ros_strict: {line}" for line in lines)
 
     def _differing(self) -> list[str]:
-        """A text for each mismatch, except where an adapter does what the test wants."""
-        wrong = [mismatch for mismatch in self._mismatches if mismatch.policy != "adapt"]
-        if not wrong:
+        """A text for each mismatch."""
+        if not self._mismatches:
             return []
         explain = importlib.import_module("ifgen_runtime.mismatch.explanation").explanation
-        return [explain(mismatch) for mismatch in wrong]
+        return [explain(mismatch) for mismatch in self._mismatches.values()]
 
     def end(self) -> None:
         """Watch no more."""
@@ -120,6 +119,13 @@ class StrictCheck:
     def _exchange(self, owner: Any, name: str, new: Any) -> None:
         self._undo.append((owner, name, getattr(owner, name)))
         setattr(owner, name, new)
+
+    def _on_mismatch(self, mismatch: Any) -> None:
+        """Keep one of each kind, unless an adapter does what the test wants."""
+        mine, theirs = mismatch.mine, mismatch.theirs
+        if mismatch.policy != "adapt":
+            key = (mismatch.name, mine.node, theirs.node, mine.type_hash, theirs.type_hash)
+            self._mismatches.setdefault(key, mismatch)
 
     def _on_thread_error(self, info: threading.ExceptHookArgs) -> None:
         # A thread that spins ends like this when its context is shut down.

@@ -87,7 +87,11 @@ class _Subject:
         role = party.role
         if self._kind == "action":
             role = "action server" if role in ("publisher", "service server") else "action client"
-        return Side(party.node.full_name, role, getattr(cls, "__type_hash__", ""), definition_of(cls))
+        try:
+            definition = definition_of(cls)
+        except Exception:  # whoever made the class, it must not keep a node from being made
+            definition = None
+        return Side(party.node.full_name, role, getattr(cls, "__type_hash__", ""), definition)
 
 
 def _first_that_differs(mine: type[Any], theirs: type[Any]) -> type[Any] | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import random
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -14,6 +15,7 @@ from ifgen.dynamic import class_from_text
 from ifgen_runtime import adapters
 from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.codec import serialize
+from ifgen_runtime.codec.decoding import size_of
 from ifgen_runtime.mismatch import listeners, told
 from ifgen_runtime.mismatch.explanation import in_one_line
 from ifgen_runtime.mismatch.sides import Mismatch
@@ -24,6 +26,8 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rmw_local import observer, telling, virtual_time
+from rmw_local.message import DecodeError, message_type
+from rmw_local.origin import Origin
 
 LATCHED = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 Message = Any
@@ -243,6 +247,38 @@ def test_nodes_that_come_and_go_by_the_thousand_fill_neither_log_nor_memory(
     assert len(reader.node.participant.told._counts) == told.NAMES + 1
     gc.collect()
     assert reader.encounters == ()
+
+
+def test_whatever_the_bytes_are_reading_them_ends_well() -> None:
+    part = f"{'=' * 80}\nMSG: demo_msgs/Part\nfloat32 x\nstring y"
+    cls = class_from_text(
+        "demo_msgs/msg/Whole",
+        f"bool b\nstring s\nwstring<=3 w\nuint8[] d\nfloat64[<=3] f\nstring[] n\nPart[] p\nint16[3] a\n{part}",
+    )
+    kind, place, draw = message_type(cls), node("n").handle.graph_node, random.Random(1)
+    origin = Origin("topic '/t'", place)
+    whole = serialize(
+        cls(b=True, s="é", w="ab", d=[1, 2], f=[0.1], n=["", "c"], p=[cls.__nested__[0](y="y")], a=[1, 2, 3])
+    )
+    read = 0
+    for _ in range(3000):
+        data = bytearray(whole)
+        for _ in range(draw.randint(1, 4)):
+            data[draw.randrange(len(data))] = draw.choice((0, 1, 3, 255, draw.randrange(256)))
+        data = (
+            data[: draw.randint(1, len(data))]
+            if draw.random() < 0.2
+            else data + draw.randbytes(draw.randint(0, 5))
+        )
+        message = origin.read(bytes(data), kind, kind.deserialize, place)
+        if message is not None:
+            read += 1
+            size = size_of(bytes(data), cls)
+            assert serialize(kind.deserialize(bytes(data[:size]))) == serialize(message)
+            with pytest.raises(DecodeError):
+                kind.deserialize(bytes(data[: size - 1]))
+    assert 0 < read < 3000
+    assert origin.counts["unreadable"] == 3000 - read
 
 
 # To refuse
