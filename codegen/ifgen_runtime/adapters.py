@@ -6,9 +6,13 @@ look them up by the hash of the other version.
 
 from __future__ import annotations
 
+import copyreg
+import sys
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeVar
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import TYPE_CHECKING, Any, Never, TypeVar
 
 from ifgen_runtime.codec import deserialize, serialize
 
@@ -22,6 +26,14 @@ MessageT = TypeVar("MessageT")
 
 class AdapterError(LookupError):
     """There is no adapter, or one was written for another version than the program has."""
+
+
+class UndecidedError(NotImplementedError):
+    """A message cannot be converted before a person has decided how: the file, the line and the field."""
+
+
+class Undecided:
+    """The type of what is left to decide. No field takes it, so type checkers report each place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,17 +58,23 @@ class Adapter:
         """Compare the version that this was written for with the one that is there."""
         found = _hash_of(self.new)
         if self.new_hash and found and found != self.new_hash:
-            raise AdapterError(
-                f"the adapter from {self.old.__name__} {short(_hash_of(self.old))} was written for "
-                f"{self.new.__name__} {short(self.new_hash)}, which is {short(found)} now: run "
-                f"`ifgen adapt` with `--from {short(self.new_hash)}`, and let this adapter import the class "
-                "that it writes"
-            )
+            raise AdapterError(_outdated(self, found))
+
+
+def _outdated(adapter: Adapter, found: str) -> str:
+    package, folder, module = adapter.old.__module__.partition("@")[0].split(".")[:3]
+    name, written_for = adapter.old.__name__.partition("_")[0], short(adapter.new_hash)
+    import_ = f", and `from .{module}_{written_for} import {name}` imports it into this module"
+    return (
+        f"the adapter from {name} {short(_hash_of(adapter.old))} was written for {name} {written_for}, and "
+        f"{name} is {short(found)} now: `ifgen adapt {package}/{folder}/{name} --from {written_for}` freezes "
+        f"that version{', and says how to import it here' if adapter.within else import_}"
+    )
 
 
 _registered: dict[tuple[str, type[Any]], Adapter] = {}
 _found: dict[tuple[str, type[Any]], Adapter | None] = {}
-"""What `adapter_for` has found since an adapter was registered, chains included."""
+"""The results of `adapter_for` since an adapter was registered, chains included."""
 
 
 def register(adapter: Adapter) -> None:
@@ -96,6 +114,41 @@ def decode(data: Buffer, type_hash: str, cls: type[MessageT]) -> MessageT:
         )
     upgraded: MessageT = adapter.upgrade(deserialize(data, adapter.old))
     return upgraded
+
+
+def undecided(question: str) -> Undecided:
+    """Stand for a value that a person has to decide on; the question names the field."""
+    raise _left_open(question)
+
+
+def lost(value: Never, question: str) -> None:
+    """Stand for the decision what becomes of a value that the other version has no field for."""
+    raise _left_open(question)
+
+
+def _left_open(question: str) -> UndecidedError:
+    import inspect  # takes longer to import than all adapters
+
+    frame = inspect.stack(0)[2]
+    return UndecidedError(f"{frame.filename}:{frame.lineno}: {question}")
+
+
+def import_all(package: str) -> None:
+    """Import the modules of adapters in a package, which registers them."""
+    for module in iter_modules(sys.modules[package].__path__):
+        if not module.name.startswith(("_", "test_", "conftest")):
+            import_module(f"{package}.{module.name}")
+
+
+def pickled_from(module: str, *classes: type[Any]) -> None:
+    """Let pickle find frozen classes in the module that has them: their names say that they are elsewhere."""
+    for cls in classes:
+        copyreg.pickle(type(cls), lambda cls: (_class_in, (module, cls.__name__)))
+
+
+def _class_in(module: str, name: str) -> type[Any]:
+    found: type[Any] = getattr(import_module(module), name)
+    return found
 
 
 def short(type_hash: str) -> str:

@@ -53,7 +53,7 @@ def test_names_of_types(complete: Run, demo_msgs: Path) -> None:
 
 def test_names_of_rules_and_templates(complete: Run) -> None:
     assert complete("rules", "keyw") == ["plain,keyword-name"]
-    assert complete("templates", "export", "a") == ["plain,all"]
+    assert complete("templates", "export", "al") == ["plain,all"]
     assert complete("templates", "list", "message_package/pack") == ["plain,message_package/package.py.j2"]
 
 

@@ -54,7 +54,16 @@ def test_paths_are_relative_to_the_file_and_options_win(
     assert found.include == (Path("elsewhere"),)
     given = settle([Path("p")], Path("o"), None, False, Path("t"))
     custom = Customization(Path("t"), partial=True)
-    assert given == Settings((Path("p"),), Path("o"), (), False, custom, path, Policy(base=tmp_path))
+    assert given == Settings(
+        (Path("p"),),
+        Path("o"),
+        (),
+        False,
+        custom,
+        path,
+        Policy(base=tmp_path),
+        adapters=tmp_path / "adapters",
+    )
 
 
 def test_no_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -124,7 +133,7 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path, monkeypatch: pytest.M
         "  |\n"
         "6 | nonsense = 1\n"
         "  | ^^^^^^^^ unknown key\n"
-        "  = help: the keys are paths, output, include, with_deps, tests, templates,\n          filters, outputs, distributions, requirements, ignore,\n          per_file_ignores, strict, breaking, ros_distro\n"
+        "  = help: the keys are paths, output, include, with_deps, tests, templates,\n          filters, outputs, distributions, requirements, ignore,\n          per_file_ignores, strict, breaking, adapters, ros_distro\n"
     )
 
 

@@ -133,7 +133,7 @@ def test_circles_are_no_chains() -> None:
 
 
 def test_an_adapter_for_another_version_than_there_is_is_refused() -> None:
-    with pytest.raises(AdapterError, match=f"written for Speed {B.__type_hash__[7:15]}, which is"):
+    with pytest.raises(AdapterError, match=f"written for Speed {B.__type_hash__[7:15]}, and Speed is"):
         Adapter(A, C, a_to_b, new_hash=B.__type_hash__)
 
 

@@ -84,6 +84,7 @@ class _Commands(click.Group):
 
     elsewhere: Final = (
         *(
+            "adapt",
             "breaking",
             "completion",
             "demo",
@@ -100,6 +101,7 @@ class _Commands(click.Group):
         *("rules", "templates", "typings"),
     )
     module_of: Final = {
+        "adapt": "evolution.adapt",
         "breaking": "evolution.breaking",
         "diff": "evolution.diff",
         "lock": "evolution.lock",

@@ -37,6 +37,7 @@ class Configuration:
     per_file_ignores: Mapping[str, frozenset[str]]
     strict: bool
     breaking: str
+    adapters: Path
     ros_distro: str | None
     _outputs: Mapping[str, Mapping[str, Any]]
     _distributions: str | None
@@ -59,6 +60,7 @@ class Configuration:
             per_file_ignores={pattern: frozenset(r) for pattern, r in said["per_file_ignores"].items()},
             strict=bool(said["strict"]),
             breaking=said["breaking"],
+            adapters=Path(said["adapters"]),
             ros_distro=said["ros_distro"],
             _outputs=dict(said["outputs"]),
             _distributions=said["distributions"],

@@ -73,6 +73,9 @@ class Config(BaseModel):
     breaking: Literal["source", "hash", "wire"] = Field(
         default="source", description="what no change may break: --category"
     )
+    adapters: Path = Field(
+        default=AnyPath("adapters"), description="where adapters are: --output of `ifgen adapt`"
+    )
     ros_distro: RosDistro | None = Field(default=None, description="the ROS 2 that the interfaces are for")
 
     @field_validator("with_deps", mode="plain")
@@ -103,6 +106,7 @@ def read(path: AnyPath) -> Config | None:
         update={
             "paths": tuple(base / p for p in config.paths),
             "output": base / config.output,
+            "adapters": base / config.adapters,
             "include": tuple(base / p for p in config.include),
             "templates": None if config.templates is None else base / config.templates,
             "filters": None if config.filters is None else base / config.filters,

@@ -32,6 +32,7 @@ class Settings:
     file: Path | None
     policy: Policy = field(default_factory=Policy)
     breaking: str = "source"
+    adapters: Path = Path("adapters")
 
     def with_paths(self) -> Settings:
         """The same settings, for a command that needs paths. Raises UsageError if there are none."""
@@ -116,6 +117,7 @@ def settle(  # noqa: PLR0913 - one for each option
         None if found is None else found.file,
         policy,
         "source" if found is None else found.breaking,
+        Path("adapters") if found is None else found.adapters,
     )
 
 

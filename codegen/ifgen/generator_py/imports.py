@@ -137,14 +137,15 @@ class Names:
 
 
 def statements(imports: Iterable[Import], own_package: str = "", *, indent: int = 0) -> tuple[str, ...]:
-    """Import statements in the order that ruff wants: standard library, other packages, this package.
+    """Import statements in the order of ruff: standard library, other packages, this one, this folder.
 
     An import is (module, name, what it is called here), with an empty module for a module itself.
     """
-    groups: tuple[dict[str, list[tuple[str, str]]], ...] = ({}, {}, {})
+    groups: tuple[dict[str, list[tuple[str, str]]], ...] = ({}, {}, {}, {})
     for module, name, spelling in imports:
         package = (module or name).partition(".")[0]
         group = 0 if package in stdlib_module_names else 2 if package and package == own_package else 1
+        group = 3 if module.startswith(".") else group
         groups[group].setdefault(module, []).append((name, spelling))
     lines: list[str] = []
     for modules in groups:

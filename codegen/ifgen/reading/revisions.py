@@ -121,6 +121,18 @@ def names(place: Path) -> list[str]:
     return ["HEAD", *listed.stdout.decode(errors="replace").splitlines()] if listed.returncode == 0 else []
 
 
+def history(path: Path, most: int) -> list[tuple[str, str]]:
+    """The commits that changed a file, with its text in each, the latest first; none without a repository."""
+    place = _existing(path.parent)
+    try:
+        listed = _git(place, "log", f"-{most}", "--format=%h", "--", str(path.absolute()))
+        commits = listed.stdout.decode().split() if listed.returncode == 0 else []
+        shown = [(c, _git(place, "show", f"{c}:./{path.name}")) for c in commits]
+    except UsageError:
+        return []
+    return [(c, s.stdout.decode(errors="replace")) for c, s in shown if s.returncode == 0]
+
+
 def _verify(name: str) -> Sequence[str]:
     return "rev-parse", "--verify", "--quiet", f"{name}^{{commit}}"
 

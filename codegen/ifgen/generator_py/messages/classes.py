@@ -55,13 +55,13 @@ def message_class(
     """The class of a message; `title` is its docstring where the definition says nothing."""
 
     def reference(type_: NamespacedType) -> str:
-        return reference_to(type_, message, scope)
+        return reference_to(type_, message, scope, facts)
 
     is_long = len(message.fields) > _MOST_F_STRINGS
     fields = tuple(_field_text(field, scope, reference) for field in message.fields)
     converts = any(field.python.converted for field in fields)
     codec = facts.codec(message)
-    scope.add_for_codec(codec.runtime_imports, _imported(codec.class_types, message))
+    scope.add_for_codec(codec.runtime_imports, _imported(codec.class_types, message, facts))
     return MessageClass(
         name=message.name,
         type_name=message.type_name,
@@ -85,19 +85,19 @@ def message_class(
     )
 
 
-def reference_to(type_: NamespacedType, home: Message, scope: Scope) -> str:
+def reference_to(type_: NamespacedType, home: Message, scope: Scope, facts: Facts) -> str:
     """The name of a message class in the module of `home`; imported if it is from another module."""
-    for import_ in _imported((type_,), home):
+    for import_ in _imported((type_,), home, facts):
         scope.add(*import_)
     return class_reference(type_, home)
 
 
-def _imported(types: Iterable[NamespacedType], home: Message) -> Iterator[Import]:
+def _imported(types: Iterable[NamespacedType], home: Message, facts: Facts) -> Iterator[Import]:
     """The imports of those classes that are not of the module of `home`."""
     for type_ in types:
         reference = class_reference(type_, home)
         if reference != type_.name:
-            yield f"{type_.package}.{type_.folder}", type_.name, reference
+            yield facts.module_of(type_), type_.name, reference
 
 
 def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:

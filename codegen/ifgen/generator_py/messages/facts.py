@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.type_description import TypeHashes
+from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.codec import CodecText, Extents, plan, render
 
 
@@ -18,3 +19,7 @@ class Facts:
     def codec(self, message: Message) -> CodecText:
         """The codec that the module of a message has."""
         return render(plan(message, self.extents))
+
+    def module_of(self, type_: NamespacedType) -> str:
+        """The module that other modules import a message class from."""
+        return f"{type_.package}.{type_.folder}"

@@ -63,7 +63,7 @@ def plan_shared(package: InterfacePackage, ensured: tuple[str, ...] = ()) -> Ite
 
 def plan_interface(interface: Interface, facts: Facts) -> Artifact:
     """The module of an interface: it depends on that and on all that its fields need, on nothing else."""
-    module = _interface_module(interface, facts)
+    module = interface_module(interface, facts)
     variables = {"module": module}
     return Artifact(module_path(interface), "message_package/interface.py.j2", variables, interface.package)
 
@@ -73,7 +73,7 @@ def plan_alone(described: Interface, facts: Facts) -> Artifact:
 
     It names its parts, and messages of the same module, without defining or importing them.
     """
-    variables = {"module": _interface_module(described, facts, alone=True)}
+    variables = {"module": interface_module(described, facts, alone=True)}
     # Without its package, so that nothing looks for import lines to move: ours are in their place.
     return Artifact(module_path(described), "message_package/interface.py.j2", variables)
 
@@ -100,7 +100,8 @@ def _folder_module(title: str, path: str, interfaces: list[Interface]) -> Folder
     )
 
 
-def _interface_module(interface: Interface, facts: Facts, *, alone: bool = False) -> InterfaceModule:
+def interface_module(interface: Interface, facts: Facts, *, alone: bool = False) -> InterfaceModule:
+    """The contents of the module of an interface; `alone`, without the parts of a service or an action."""
     parts = (interface,) if isinstance(interface, Message) else () if alone else interface.messages
     scope = Scope(interface.package, taken_names(parts))
     lines = class_lines(scope)
@@ -178,6 +179,6 @@ def _action_class(action: Action, facts: Facts, scope: Scope) -> ActionClass:
         send_goal=action.send_goal.name,
         get_result=action.get_result.name,
         feedback_message=action.feedback_message.name,
-        cancel_goal=reference_to(cancel_goal, action.goal, scope),
-        goal_status_array=reference_to(goal_status_array, action.goal, scope),
+        cancel_goal=reference_to(cancel_goal, action.goal, scope, facts),
+        goal_status_array=reference_to(goal_status_array, action.goal, scope, facts),
     )

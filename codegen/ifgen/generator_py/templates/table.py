@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
+from ifgen.generator_py.adapters.context import AdapterModule, AdapterPackage, AdapterTests, FrozenModule
 from ifgen.generator_py.messages.context import FolderModule, InterfaceModule, PackageModule, ProjectFile
 from ifgen.generator_py.nodes.context import (
     ChecksModule,
@@ -62,6 +63,16 @@ TEMPLATES: Final[Mapping[str, Entry]] = {
     "test_package/conftest.py.j2": Entry("<package>/test/conftest.py", {"test": TestSupport}),
     "test_package/contract.py.j2": Entry("<package>/test/test_<node>_contract.py", {"test": NodeTests}),
     "test_package/own.py.j2": Entry("<package>/test/test_<node>.py, once", {"test": OwnTests}),
+    "adapter_package/package.py.j2": Entry("<adapters>/__init__.py, once", {"package": AdapterPackage}),
+    "adapter_package/adapter.py.j2": Entry(
+        "<adapters>/<interface>_<hash>.py, once", {"adapter": AdapterModule}
+    ),
+    "adapter_package/frozen.py.j2": Entry(
+        "<adapters>/_<interface>_<hash>.py", {"module": InterfaceModule, "frozen": FrozenModule}
+    ),
+    "adapter_package/tests.py.j2": Entry(
+        "<adapters>/test_adapt_<interface>_<hash>.py, once", {"test": AdapterTests}
+    ),
 }
 """ifgen's own."""
 

@@ -89,6 +89,10 @@ class Strategies:
         self._modules.add(f"{package}.{folder}")
         return f"{package}.{folder}.{name}"
 
+    def strategy_name(self, message: Message) -> str:
+        """The name of the strategy for messages of this class, in the test module."""
+        return f"{message.package}_{message.folder}_{message.name}"
+
     def message(self, message: Message) -> str:
         """The name of the strategy for messages of this class."""
         if message.type_name not in self._messages:
@@ -97,7 +101,7 @@ class Strategies:
                 f"{attribute_name(field)}={self.value(field.type, constants.get(field.name, ()))}"
                 for field in message.fields
             ]
-            name = f"{message.package}_{message.folder}_{message.name}"
+            name = self.strategy_name(message)
             strategy = enclosed("st.builds(", [self.message_class(message), *arguments], ")", len(name) + 3)
             self._messages[message.type_name] = name, strategy
         return self._messages[message.type_name][0]

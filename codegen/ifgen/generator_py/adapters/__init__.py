@@ -1,0 +1,1 @@
+"""Modules that convert messages of another version of a type (docs/adapters.md)."""
