@@ -17,6 +17,7 @@ from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer
 from ifgen_runtime.mismatch.real_rclpy.remembered import Once
 from ifgen_runtime.mismatch.sides import Definition, Mismatch, Side, definition_of
+from ifgen_runtime.mismatch.told import Say, Told
 
 _NAMELESS: Final = "a node without a name"
 
@@ -48,13 +49,14 @@ class Teller:
 
     def __init__(self, context: Any, stop: threading.Event) -> None:
         self._asker = Asker(context, stop)
-        self._told = Once()
+        self._seen = Once()
+        self._told = Told()
         self._untold: list[Meeting] = []
         self._complaints: set[str] = set()
 
     def note(self, meeting: Meeting) -> None:
         """Tell of a meeting soon, unless its pair has been told."""
-        if self._told.is_new(meeting.key):
+        if self._seen.is_new(meeting.key):
             self._untold.append(meeting)
 
     def tell(self, endpoints: Iterable[Endpoint]) -> None:
@@ -69,11 +71,31 @@ class Teller:
                 if not meeting.peer.type_hash:
                     _tell_of_no_hash(meeting)
                 elif meeting.peer.type_hash in here:
-                    _tell(meeting, definition_of(here[meeting.peer.type_hash]))
+                    self._tell(meeting, definition_of(here[meeting.peer.type_hash]))
                 else:
-                    _tell(meeting, self._asker.answer(meeting.peer.type_hash))
+                    self._tell(meeting, self._asker.answer(meeting.peer.type_hash))
             except Exception as error:  # such as a node that has been destroyed meanwhile
                 self.complain(error)
+
+    def _tell(self, meeting: Meeting, theirs: Definition | None) -> None:
+        """Tell listeners, and the user as often as `told` has it."""
+        mismatch, endpoint = _mismatch(meeting, theirs), meeting.endpoint
+        listeners.tell(mismatch)
+        say = self._told.count(endpoint.name)
+        logger = endpoint.node.get_logger()
+        if say is Say.NO_MORE:
+            logger.warning(
+                f"{endpoint.kind} '{endpoint.name}': more endpoints differ, which is not said any more"
+            )
+        elif say is Say.ALL and mismatch.policy == OnTypeMismatch.ADAPT:
+            logger.info(explanation(mismatch))
+        elif say is Say.ALL:
+            text = explanation(mismatch)
+            if endpoint.policy is OnTypeMismatch.ADAPT and meeting.policy is OnTypeMismatch.REFUSE:
+                text += "\nNo adapter is registered that converts between the two."
+            if not endpoint.is_connected():
+                text += "\nThe middleware has not connected them: nothing is delivered between them."
+            logger.warning(text)
 
     def complain(self, error: Exception) -> None:
         """Say once that something has failed, to whoever looks for it."""
@@ -105,15 +127,6 @@ def _mismatch(meeting: Meeting, theirs: Definition | None) -> Mismatch:
         Side(endpoint.node_name, endpoint.role, part.type_hash, definition_of(part.cls)),
         Side(peer.node or _NAMELESS, endpoint.others, peer.type_hash, theirs),
     )
-
-
-def _tell(meeting: Meeting, theirs: Definition | None) -> None:
-    mismatch, endpoint = _mismatch(meeting, theirs), meeting.endpoint
-    listeners.tell(mismatch)
-    text = explanation(mismatch)
-    if not endpoint.is_connected():
-        text += "\nThe middleware has not connected them: nothing is delivered between them."
-    endpoint.node.get_logger().warning(text)
 
 
 def _tell_of_no_hash(meeting: Meeting) -> None:
