@@ -20,7 +20,7 @@ _FASTRTPS: Final = "rmw_fastrtps_cpp"
 # rmw implementations that take rosidl_typesupport_fastrtps_c handles and nothing else of a message's memory.
 _SUPPORTED: Final = frozenset({_FASTRTPS, "rmw_fastrtps_dynamic_cpp", "rmw_zenoh_cpp"})
 
-_VERSION: Final = 2  # of the extension's functions for type support; module.c has the same number
+_VERSION: Final = 3  # of the extension's functions for type support; module.c has the same number
 _SYMBOLS: Final = {
     "fast_buffer": "_ZN8eprosima7fastcdr10FastBufferC1EPcm",
     "cdr": "_ZN8eprosima7fastcdr3CdrC1ERNS0_10FastBufferENS1_10EndiannessENS0_10CdrVersionE",

@@ -53,6 +53,15 @@ def give_type_support(cls: type[Any]) -> None:
         give(cls, _message(cls)[1])
 
 
+def troubles(cls: type[Any]) -> tuple[int, int, int]:
+    """How many payloads of a class were dropped, how many had bytes left over, and how many the last one had.
+
+    They are counted from when the class got its type support, for all that receives it.
+    """
+    counts: tuple[int, int, int] = native().troubles(_messages[cls][0])
+    return counts
+
+
 def give(cls: type[Any], capsules: tuple[Any, ...]) -> None:
     """Set the capsules of a message, or the one of a service or an action, on the metaclass of its class."""
     for attribute, capsule in zip(

@@ -163,12 +163,14 @@ static bool walk(cursor *at, const row *r, const row *end) {
   return true;
 }
 
-bool layout_accepts(const layout *self, const uint8_t *payload, size_t size, layout_sequence *longest) {
+bool layout_accepts(const layout *self, const uint8_t *payload, size_t size, layout_sequence *longest, size_t *rest) {
   if (longest) *longest = (layout_sequence){0};
   /* Plain CDR, 00 00 big endian and 00 01 little endian: what the generated decoders read. */
   if (size < ENCAPSULATION || payload[0] != 0 || payload[1] > 1 || !self->count) return false;
   const table *message = &self->parts[self->count - 1].table;
   cursor at = {.layout = self, .body = payload + ENCAPSULATION, .end = size - ENCAPSULATION, .swapped = payload[1] == 0,
                .rows = message->rows, .longest = longest};
-  return walk(&at, message->rows, message->rows + message->row_count);
+  if (!walk(&at, message->rows, message->rows + message->row_count)) return false;
+  if (rest) *rest = at.end - at.position;
+  return true;
 }

@@ -39,9 +39,9 @@ typedef struct {
   size_t value_size, size; /* of a value, of all [bytes] */
 } layout_sequence;
 
-/* Whether a payload, its 4-byte encapsulation header included, holds a whole message. Trailing bytes are fine. `longest`
- * may be NULL. It becomes the longest sequence of numbers outside all repetitions and calls; its size is 0 where there
- * is none, and where the payload has the other byte order. */
-bool layout_accepts(const layout *, const uint8_t *payload, size_t size, layout_sequence *longest);
+/* Whether a payload, its 4-byte encapsulation header included, holds a whole message. Trailing bytes are fine: `rest`
+ * becomes their number. `longest` may be NULL, as may `rest`. It becomes the longest sequence of numbers outside all
+ * repetitions and calls; its size is 0 where there is none, and where the payload has the other byte order. */
+bool layout_accepts(const layout *, const uint8_t *payload, size_t size, layout_sequence *longest, size_t *rest);
 
 #endif

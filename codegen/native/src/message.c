@@ -1,9 +1,7 @@
 /* Messages: what rclpy converts, what DDS carries. */
 #include "message.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 /* ---- called by rclpy, with the GIL and no DDS lock -------------------------------------------------------- */
 
@@ -18,24 +16,10 @@ void *message_create(const message_type *type) {
   return self;
 }
 
-/* Say on stderr how many payloads were dropped; not more than once a second, so that a peer cannot fill a log. */
-static void tell_of_drops(const message_type *type) {
-  drop_count *drops = type->drops;
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  long long told = drops->told;
-  if (told == (long long)now.tv_sec || !atomic_compare_exchange_strong(&drops->told, &told, (long long)now.tv_sec)) return;
-  unsigned count = atomic_exchange(&drops->untold, 0);
-  const message_callbacks *named = &type->callbacks;
-  fprintf(stderr, "ifgen_native: dropped %u malformed message%s of type %s::%s (does a publisher have another definition of it?)\n",
-          count, count == 1 ? "" : "s", named->namespace_, named->name);
-}
-
 /* Usually with the GIL; a service event is destroyed by rcl without saying. */
 void message_destroy(void *that) {
   message *self = that;
   if (!self) return;
-  if (self->type->drops->untold) tell_of_drops(self->type);
   /* Where the interpreter is gone already, its objects are gone with it. */
   const bool needs_gil = self->object || self->large.count || sending_needs_gil(self);
   if (!needs_gil) sending_release(self);
@@ -103,15 +87,24 @@ static bool serialize(const void *that, void *cdr) {
   return true;
 }
 
+/* Some writers fill the payload up to a multiple of four. */
+static bool is_padding(size_t rest, size_t size) { return rest < 4 && size % 4 == 0; }
+
 static bool deserialize(void *cdr, void *that) {
   message *self = that;
   const char *payload;
   size_t size;
   fastcdr_payload(cdr, &payload, &size);
-  if (!layout_accepts(&self->type->layout, (const uint8_t *)payload, size, &self->large.longest)) {
+  size_t rest;
+  trouble_count *troubles = self->type->troubles;
+  if (!layout_accepts(&self->type->layout, (const uint8_t *)payload, size, &self->large.longest, &rest)) {
     /* A sample that cannot be read is dropped here: an error out of convert_to_py would end the node's spin. */
-    self->type->drops->untold++;
+    troubles->dropped++;
     return false;
+  }
+  if (rest && !is_padding(rest, size)) {
+    troubles->rest = (unsigned)rest;
+    troubles->with_rest++;
   }
   return large_receive(&self->large, &self->received, payload, size);
 }

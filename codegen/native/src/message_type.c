@@ -68,13 +68,13 @@ PyObject *native_message(PyObject *module, PyObject *arguments) {
   if (!layout_from_python(&layout, tables)) return NULL;
   message_type *type = calloc(1, sizeof *type);
   char *text = last_text(tables);
-  drop_count *drops = calloc(1, sizeof *drops);
-  create_function create = type && text && drops ? claim_message_slot(type) : NULL;
+  trouble_count *troubles = calloc(1, sizeof *troubles);
+  create_function create = type && text && troubles ? claim_message_slot(type) : NULL;
   if (!create) {
     layout_free(&layout);
     free(type);
     free(text);
-    free(drops);
+    free(troubles);
     return PyErr_Occurred() ? NULL : PyErr_NoMemory();
   }
   type->handle = (message_handle){fastrtps_identifier, &type->callbacks, find, type_hash, type_description, type_sources};
@@ -87,7 +87,7 @@ PyObject *native_message(PyObject *module, PyObject *arguments) {
   type->sources = pointer(sources);
   type->layout = layout;
   type->text = text;
-  type->drops = drops;
+  type->troubles = troubles;
   Py_INCREF(encode);
   Py_INCREF(decode);
   type->codec = codec_of((PyTypeObject *)cls);

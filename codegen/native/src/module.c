@@ -16,9 +16,17 @@ static PyObject *native_accepts(PyObject *module, PyObject *arguments) {
   if (!PyArg_ParseTuple(arguments, "OS:accepts", &tables, &payload)) return NULL;
   layout layout = {0};
   if (!layout_from_python(&layout, tables)) return NULL;
-  bool accepted = layout_accepts(&layout, (const uint8_t *)PyBytes_AsString(payload), (size_t)PyBytes_Size(payload), NULL);
+  bool accepted = layout_accepts(&layout, (const uint8_t *)PyBytes_AsString(payload), (size_t)PyBytes_Size(payload), NULL, NULL);
   layout_free(&layout);
   return PyBool_FromLong(accepted);
+}
+
+static PyObject *native_troubles(PyObject *module, PyObject *message_type_address) {
+  (void)module;
+  const message_type *type = PyLong_AsVoidPtr(message_type_address);
+  if (!type) return PyErr_Occurred() ? NULL : PyErr_Format(PyExc_ValueError, "the address of a message type is 0");
+  const trouble_count *troubles = type->troubles;
+  return Py_BuildValue("III", troubles->dropped, troubles->with_rest, troubles->rest);
 }
 
 static PyMethodDef methods[] = {
@@ -27,6 +35,8 @@ static PyMethodDef methods[] = {
     {"message", native_message, METH_VARARGS, "Make the type support of a message and its five capsules."},
     {"service", native_service, METH_VARARGS, "Make the type support of a service from those of its messages."},
     {"action", native_action, METH_VARARGS, "Make the type support of an action from those of its parts."},
+    {"troubles", native_troubles, METH_O,
+     "How many payloads of a type were dropped, how many had bytes left over, and how many the last of these had."},
     {"accepts", native_accepts, METH_VARARGS, "Whether a payload is well-formed for the tables of a layout."},
     {NULL, NULL, 0, NULL},
 };
@@ -39,7 +49,7 @@ static struct PyModuleDef definition = {
     .m_methods = methods,
 };
 
-enum { TYPE_SUPPORT_VERSION = 2 }; /* of the functions above; ifgen_runtime/type_support/binding.py has the same */
+enum { TYPE_SUPPORT_VERSION = 3 }; /* of the functions above; ifgen_runtime/type_support/binding.py has the same */
 
 PyMODINIT_FUNC PyInit__native(void) {
   PyObject *module = PyModule_Create(&definition);

@@ -16,11 +16,12 @@
 #include "layout.h"
 #include "rosidl.h"
 
-/* Malformed payloads of a type. */
+/* Payloads of a type that its definition does not explain. */
 typedef struct {
-  atomic_uint untold; /* dropped since the last report */
-  atomic_llong told;  /* time of the last report, on the monotonic clock [s] */
-} drop_count;
+  atomic_uint dropped;   /* malformed */
+  atomic_uint with_rest; /* longer than the message */
+  atomic_uint rest;      /* bytes left over of the last of these */
+} trouble_count;
 
 /* A message type. The records of types live as long as the process: entities hold pointers into them. */
 typedef struct message_type {
@@ -35,7 +36,7 @@ typedef struct message_type {
   char *text; /* of the layout's last table */
   PyObject *make_event; /* of a service's event message: the parts of an event -> object */
   bool is_in_events; /* a request or a response: what was sent is kept for service events */
-  drop_count *drops;
+  trouble_count *troubles;
 } message_type;
 
 /* fastcdr.c: what we need of libfastcdr, rcutils and rosidl. */

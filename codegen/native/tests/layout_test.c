@@ -32,8 +32,12 @@ static bool add(layout *to, const char *text, const uint32_t *calls, size_t type
 static bool accepts(const layout *self, const uint8_t *payload, size_t size, layout_sequence *longest) {
   uint8_t *copy = exactly(payload, size);
   layout_sequence found;
-  bool result = layout_accepts(self, copy, size, &found);
-  assert(result == layout_accepts(self, copy, size, NULL));
+  size_t rest = 0;
+  bool result = layout_accepts(self, copy, size, &found, &rest);
+  assert(result == layout_accepts(self, copy, size, NULL, NULL));
+  assert(!result || rest <= size - 4);
+  /* A message ends where its rest begins. */
+  assert(!result || (layout_accepts(self, copy, size - rest, NULL, NULL) && !(size - rest > 4 && layout_accepts(self, copy, size - rest - 1, NULL, NULL))));
   if (result && found.size) {
     uint32_t count;
     memcpy(&count, copy + found.count_at, 4);
@@ -124,9 +128,9 @@ static void test_a_short_layout_for_a_long_message(void) {
   layout self = {0};
   assert(add(&self, "R1 B0._a", NULL, 0));
   for (uint32_t level = 0; level < 20; level++) assert(add(&self, "R2 E0._a.1.0 E0._b.2.0 C1.0 C2.0", &level, 1));
-  size_t size = 4 + (1u << 20);
+  size_t size = 4 + (1u << 20), rest;
   uint8_t *payload = calloc(size, 1);
-  assert(layout_accepts(&self, payload, size, NULL) && !layout_accepts(&self, payload, size - 1, NULL));
+  assert(layout_accepts(&self, payload, size, NULL, &rest) && rest == 0 && !layout_accepts(&self, payload, size - 1, NULL, NULL));
   free(payload);
   layout_free(&self);
 }

@@ -1,6 +1,5 @@
 """Payloads that are not messages are dropped, and the node goes on."""
 
-import math
 import time
 
 from common import never_compiled, rclpy, spin_until
@@ -28,7 +27,6 @@ publisher.publish(big_endian)
 publisher.publish(good)
 spin_until(node, lambda: len(received) == 2)
 print([list(message.name) for message in received])
-begin = time.monotonic()
 # A peer that sends only these, of two types in turn, one of them with headers that Fast CDR itself refuses.
 node.create_subscription(never_compiled("std_msgs/msg/String"), "texts", received.append, 100)
 texts = node.create_publisher(String, "texts", 100)
@@ -38,6 +36,6 @@ for _ in range(500):
     publisher.publish(b"\x00\x77" + good[2:])
     rclpy.spin_once(node, timeout_sec=0)
     rclpy.spin_once(node, timeout_sec=0)
-print(math.ceil(time.monotonic() - begin))
+time.sleep(1)  # the thread that counts looks four times a second
 node.destroy_node()
 rclpy.shutdown()

@@ -14,6 +14,7 @@ import ifgen.dynamic
 from common import rclpy
 from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.mismatch import listeners
+from rcl_interfaces.msg import Log
 from rclpy.action import ActionClient, ActionServer
 from rclpy.event_handler import SubscriptionEventCallbacks
 
@@ -113,6 +114,10 @@ def mine() -> None:
         tick_times.append(time.monotonic())
 
     node.create_subscription(Tick, "/tick", note_tick, 10)
+    said = []
+    node.create_subscription(
+        Log, "/rosout", lambda log: said.append(log) if "left over" in log.msg else None, 10
+    )
     go_on = node.create_publisher(Tick, "/go_on", 10)
     serve(node, OURS, "/serve", requests)
     client = node.create_client(ADDS[OURS], "/ask")
@@ -126,6 +131,8 @@ def mine() -> None:
         nonlocal future, seen_before
         if future is None and client.service_is_ready():
             future = client.call_async(ADDS[OURS].Request(a=0.1, b=0.2))
+        if policy == "warn" and distribution == "jazzy" and not said:
+            return False
         if len(heard) < 4 or (asks and not (future and future.done() and requests)):
             return False
         if seen_before is None:

@@ -85,6 +85,7 @@ class Endpoint:
         "cls",
         "count_by",
         "counted",
+        "differing",
         "guard",
         "name",
         "node_of",
@@ -119,6 +120,8 @@ class Endpoint:
         """How many others there were at the last look."""
         self.guard = guard
         """The guard that keeps messages of other definitions from it, if its node's policy asks for one."""
+        self.differing: tuple[str, ...] = ()
+        """The names of the nodes whose definitions differed, the last time that there were any."""
         self.tries = 0
         """How many looks in a row have found somebody whose node has no name yet."""
 

@@ -24,6 +24,7 @@ from ifgen_runtime.mismatch.real_rclpy.deciding import applied
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer, differs, peers
 from ifgen_runtime.mismatch.real_rclpy.telling import Meeting, Teller
+from ifgen_runtime.mismatch.real_rclpy.troubles import Troubles
 
 _PERIOD: Final = 0.25
 """Seconds between two looks, at least."""
@@ -40,6 +41,9 @@ _TURN_BUDGET: Final = 0.0005
 _NAMELESS: Final = 2
 """How many looks wait for the name of a node: it comes a little later than its endpoints."""
 
+_NAMED: Final = 3
+"""How many nodes a warning about bytes names."""
+
 _LEAVING: Final = 2.0
 """Seconds that the interpreter waits for the thread when it exits."""
 
@@ -53,6 +57,7 @@ class Watch:
         self._turn = 0
         self._stop = threading.Event()
         self._teller = Teller(context, self._stop)
+        self._troubles = Troubles()
         self._thread = threading.Thread(target=self._run, name="ifgen type mismatch", daemon=True)
         self._thread.start()
         context.on_shutdown(self._stop.set)
@@ -96,6 +101,7 @@ class Watch:
         endpoints = self._endpoints()
         self._turn = self._turn % len(endpoints) if endpoints else 0
         self._turn += self._meet_some(endpoints[self._turn :] + endpoints[: self._turn], _TURN_BUDGET)
+        self._troubles.look(endpoints)
 
     def _meet_some(self, endpoints: Iterable[Endpoint], budget: float) -> int:
         """Read whom endpoints meet, for `budget` [s]; returns how many it was."""
@@ -125,7 +131,10 @@ class Watch:
         if endpoint.tries < _NAMELESS and not all(peer.node for _, peer in others):
             endpoint.tries += 1
             return
+        if endpoint.seen < 0:
+            self._troubles.note(endpoint)
         endpoint.tries, endpoint.seen = 0, count
+        endpoint.differing = _names(others) or endpoint.differing
         for part, peer in _first_parts(others):
             hashes = [(of, found.type_hash) for of, found in others if found.node == peer.node]
             policy = applied(endpoint.policy, endpoint.role, hashes)
@@ -158,6 +167,10 @@ class _Node:
         except InvalidHandle:
             return False
         return True
+
+
+def _names(others: list[tuple[Part, Peer]]) -> tuple[str, ...]:
+    return tuple(sorted({peer.node for _, peer in others if peer.node and peer.type_hash}))[:_NAMED]
 
 
 def _first_parts(others: list[tuple[Part, Peer]]) -> Iterator[tuple[Part, Peer]]:
