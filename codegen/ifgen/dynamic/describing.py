@@ -71,7 +71,7 @@ def describe(node: Any, topic: str, *, timeout: float = 5.0, type_hash: str | No
 
 
 def answers(node: Any, endpoints: Iterable[Endpoint], timeout: float) -> dict[Endpoint, TypeDescription]:
-    """What other nodes say of types that they use. All are asked together, each once.
+    """The answers of other nodes about types that they use. All are asked together, each once.
 
     Nodes that do not answer within `timeout` [s], or refuse, are left out.
     """

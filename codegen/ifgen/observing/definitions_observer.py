@@ -58,7 +58,7 @@ def _definitions(node: Any, found: Iterable[Disagreement]) -> dict[str, Definiti
 
 
 def _questions(found: Iterable[Disagreement]) -> Iterator[Endpoint]:
-    """Whom to ask for what: nobody twice for the same."""
+    """The questions to nodes, none of them twice."""
     for disagreement in found:
         if len(disagreement.type_names) > 1:
             continue  # the names say it all

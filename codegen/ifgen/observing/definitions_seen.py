@@ -78,7 +78,7 @@ def users(node: Any) -> tuple[tuple[str, ...], tuple[User, ...]]:
 
 
 def disagreements(found: Iterable[User]) -> list[Disagreement]:
-    """What nodes have different definitions of, sorted by name."""
+    """The disagreements among nodes, sorted by name."""
     channels: dict[tuple[str, str, str], dict[Version, list[User]]] = {}
     for user in found:
         if user.type_hash != "":
@@ -132,7 +132,7 @@ def _of_services(node: Any) -> Iterator[User]:
 
 
 def _infos(node: Any, topic: str, *, no_mangle: bool) -> tuple[list[Any], list[Any]]:
-    """Who writes to a topic, and who reads it."""
+    """The writers of a topic, and its readers."""
     writers = node.get_publishers_info_by_topic(topic, no_mangle=no_mangle)
     return writers, node.get_subscriptions_info_by_topic(topic, no_mangle=no_mangle)
 

@@ -21,7 +21,7 @@ def observe(
     transport: Literal["local", "rclpy", "auto"],
     rule: Literal["no-graph", "no-node"],
 ) -> SeenT:
-    """What an observer saw, which runs after the programs: all end with it, and stdout is not theirs.
+    """Run an observer after the programs, and return what it saw. All end with it; stdout is not theirs.
 
     `observer` returns its arguments for the file that it is to write, and `read` what is in that. Raises
     UsageError, by a rule, if the observer wrote nothing.

@@ -1,4 +1,4 @@
-"""What a warning says: with the toolkit, the fields that differ and their places; without it, one line."""
+"""The text of a warning: with the toolkit, the fields that differ and their places; without it, one line."""
 
 from __future__ import annotations
 

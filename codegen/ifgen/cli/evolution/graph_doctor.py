@@ -13,7 +13,7 @@ from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.evolution.explaining.definitions import Installed, Known, of_document, of_sources
 from ifgen.evolution.explaining.differences import differences
-from ifgen.evolution.explaining.explanation import short
+from ifgen.evolution.explaining.explanation import adapt_command, short
 from ifgen.observing import definitions_observation
 from ifgen.observing.definitions_observation import Seen
 from ifgen.observing.definitions_seen import Disagreement, User, Version, disagreements, without_hash
@@ -30,7 +30,7 @@ _FAR: Final = 1_000
 
 
 def observed(programs: Sequence[list[str]], transport: Literal["local", "rclpy", "auto"]) -> Seen:
-    """What nodes use while these programs run. Raises UsageError if the programs end too early."""
+    """Observe what nodes use while these programs run. Raises UsageError if the programs end too early."""
     observer = partial(definitions_observation.command, nodes=len(programs))
     seen = observe(programs, observer, definitions_observation.read, transport, rule="no-graph")
     if not seen.nodes:
@@ -40,7 +40,7 @@ def observed(programs: Sequence[list[str]], transport: Literal["local", "rclpy",
 
 
 def findings(seen: Seen, include: Sequence[Path]) -> Iterator[Diagnostic]:
-    """What nodes disagree on, each followed by what differs, and a warning about nodes that do not say."""
+    """The disagreements, each followed by its differences, and a warning about nodes that do not say."""
     finder = _Finder(seen, Installed(time.monotonic() + _PATIENCE, include))
     for disagreement in disagreements(seen.users):
         yield from finder.findings(disagreement)
@@ -78,7 +78,7 @@ class _Finder:
             found = differences(theirs, mine, self._installed)
             changes += found.changes
             helps += [found.remark] if found.remark else []
-        helps.append(_advice(disagreement))
+        helps.append(_advice(disagreement, ours))
         yield Diagnostic("type-mismatch", _message(disagreement), help="\n".join(helps))
         yield from changes
 
@@ -110,10 +110,14 @@ def _unknown(version: Version) -> str:
     )
 
 
-def _advice(disagreement: Disagreement) -> str:
+def _advice(disagreement: Disagreement, ours: Version) -> str:
     if len(disagreement.type_names) > 1:
         return "rename one of them, or use one type in all nodes"
-    return "use one definition in all nodes, or convert with an adapter: see `ifgen adapt --help`"
+    advice = "use one definition in all nodes"
+    hashes = [v.type_hash for v in disagreement.versions if v != ours and v.type_hash]
+    commands = [adapt_command(disagreement.kind, ours.type_name, each) for each in hashes]
+    told = [command for command in commands if command]
+    return "\n".join([f"{advice}, or convert with an adapter:", *told]) if told else advice
 
 
 def _message(disagreement: Disagreement) -> str:

@@ -64,7 +64,7 @@ def of_document(side: Mapping[str, Any]) -> Known | None:
 
 
 class Installed:
-    """What is installed, as far as it can be found in time.
+    """The definitions that are installed, as far as they can be found in time.
 
     `until` is a moment of `time.monotonic`. `include` are folders besides those of the configuration.
     """

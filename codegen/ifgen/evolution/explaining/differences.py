@@ -1,4 +1,4 @@
-"""What differs between two definitions of a type that have different hashes."""
+"""The differences between two definitions of a type that have different hashes."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ PATIENCE: Final = 0.5
 
 _SHOWN: Final = 5
 _NEVER_SENT: Final = ("_Request", "_Response")
-"""What a node sends by the hash of the whole service only, which the graph of ROS does not tell."""
+"""The ends of types that nodes describe by the hash of a whole service, which the graph does not tell."""
 
 _DIGITS: Final = len("RIHS01_") + 16
 
@@ -61,11 +61,13 @@ def explained(mismatch: Mapping[str, Any]) -> Explanation:
     keeps_bytes = bool(found.changes) and all(Category.WIRE not in change.breaks for change in found.changes)
     remarks.append(_what_happens(mismatch, keeps_bytes=keeps_bytes))
     shown, left_out = found.changes[:_SHOWN], len(found.changes[_SHOWN:])
-    return Explanation(head(mismatch), shown, left_out, tuple(remarks), _command(mismatch))
+    is_adapted = mismatch["policy"] == "adapt"
+    command = None if is_adapted else adapt_command(mismatch["kind"], type_name, theirs["type_hash"])
+    return Explanation(head(mismatch), shown, left_out, tuple(remarks), command)
 
 
 def head(mismatch: Mapping[str, Any]) -> str:
-    """Who met whom, on what, with the hashes of both."""
+    """The sentence that says who met whom, on what, with the hashes of both."""
     mine, theirs = mismatch["mine"], mismatch["theirs"]
     return (
         f"{mismatch['kind']} '{mismatch['name']}': {theirs['node']} ({theirs['role']}) has another "
@@ -95,7 +97,7 @@ def _unknown(side: Mapping[str, Any], type_name: str) -> str:
 
 
 def _what_happens(mismatch: Mapping[str, Any], *, keeps_bytes: bool) -> str:
-    """What is done with messages."""
+    """The sentence that says what is done with messages."""
     mine, theirs = mismatch["mine"]["node"], mismatch["theirs"]["node"]
     what = "messages" if mismatch["kind"] == "topic" else "requests and responses"
     match mismatch["policy"]:
@@ -111,12 +113,10 @@ def _what_happens(mismatch: Mapping[str, Any], *, keeps_bytes: bool) -> str:
     return f"on_type_mismatch is {mismatch['policy']}: {how}"
 
 
-def _command(mismatch: Mapping[str, Any]) -> str | None:
-    """What writes an adapter; None if there is one, or if the hash is of a part that ROS derives."""
-    type_name = mismatch["type_name"]
-    if mismatch["kind"] == "service":
+def adapt_command(kind: str, type_name: str, type_hash: str) -> str | None:
+    """The command that writes an adapter from a version; None if the hash is of a part that ROS derives."""
+    if kind == "service":
         type_name = type_name.removesuffix("_Request").removesuffix("_Response")
-    is_derived = mismatch["kind"] == "action" and "_" in type_name.rpartition("/")[2]
-    if mismatch["policy"] == "adapt" or is_derived:
+    if kind == "action" and "_" in type_name.rpartition("/")[2]:
         return None
-    return f"ifgen adapt {type_name} --from {short(mismatch['theirs']['type_hash'])}"
+    return f"ifgen adapt {type_name} --from {short(type_hash)}"
