@@ -1,4 +1,4 @@
-"""Runs each file of `inside/` on each transport, and programs that import libraries."""
+"""Runs each file and folder of `inside/` on each transport, and programs that import libraries."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.real_rclpy import again_if_crashed
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
-TIME_LIMIT = 110  # [s] for one file
+TIME_LIMIT = 110  # [s] for one of them
 TRANSPORTS = [
     "local",
     pytest.param(
@@ -43,10 +43,10 @@ def run(*words: str | Path, **variables: str) -> subprocess.CompletedProcess[str
 
 
 @pytest.mark.parametrize("transport", TRANSPORTS)
-@pytest.mark.parametrize("file", sorted((HERE / "inside").glob("test_*.py")), ids=lambda path: path.stem)
-def test_file(file: Path, transport: str, tmp_path: Path) -> None:
-    """Every test in the file passes."""
-    words = ("-q", "-p", "no:cacheprovider", "--timeout=60", "--transport", transport, file)
+@pytest.mark.parametrize("tests", sorted((HERE / "inside").glob("[!_]*")), ids=lambda path: path.stem)
+def test_inside(tests: Path, transport: str, tmp_path: Path) -> None:
+    """Every test in the file or folder passes."""
+    words = ("-q", "-p", "no:cacheprovider", "--timeout=60", "--transport", transport, tests)
     done = run("pytest", *words, IFGEN_INSIDE_TRANSPORT=transport, ROS_LOG_DIR=str(tmp_path))
     assert done.returncode == 0, f"{done.stdout[-8000:]}\n{done.stderr[-4000:]}"
 

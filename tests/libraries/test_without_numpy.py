@@ -1,4 +1,4 @@
-"""The answer of sensor_msgs_py where numpy is missing."""
+"""The libraries where numpy is missing."""
 
 from __future__ import annotations
 
@@ -25,3 +25,21 @@ except ImportError as error:
     assert said == (
         "ModuleNotFoundError numpy: sensor_msgs_py needs numpy: run `python -m pip install numpy`\n"
     )
+
+
+def test_tf2_does_without() -> None:
+    program = """
+import sys, ifgen
+sys.modules["numpy"] = None
+ifgen.activate("local")
+import tf2_ros, tf2_geometry_msgs
+buffer = tf2_ros.Buffer()
+transform = tf2_ros.TransformStamped(child_frame_id="base")
+transform.header.frame_id = "map"
+transform.transform.translation.x = 0.1
+buffer.set_transform(transform, "test")
+pose = tf2_ros.PoseStamped()
+pose.header.frame_id = "base"
+print(buffer.transform(pose, "map").pose.position.x)
+"""
+    assert subprocess.check_output([sys.executable, "-c", program], text=True, timeout=60) == "0.1\n"

@@ -9,8 +9,8 @@ from rclpy.time import Time
 
 from tf2_py import messages, reports
 from tf2_py.caches import seconds
-from tf2_py.exceptions import TransformException
 from tf2_py.messages import to_message, to_nanoseconds
+from tf2_py.names import complaint, require
 from tf2_py.transforms import Vector, compose, normalized
 from tf2_py.tree import FrameTree, without_detour
 from tf2_py.velocity import Twist, twist_between
@@ -75,7 +75,7 @@ class BufferCore:
         stamp = to_nanoseconds(time)
         with self._lock:
             if target_frame != source_frame:
-                self._validate(target_frame=target_frame, source_frame=source_frame)
+                self._require(target_frame=target_frame, source_frame=source_frame)
             transform, found = self._tree.lookup(target_frame, source_frame, stamp)
         return to_message(target_frame, source_frame, transform, found)
 
@@ -90,7 +90,7 @@ class BufferCore:
         """Return the transform between two frames at two times; the fixed frame does not move in between."""
         then, now = to_nanoseconds(source_time), to_nanoseconds(target_time)
         with self._lock:
-            self._validate(target_frame=target_frame, source_frame=source_frame, fixed_frame=fixed_frame)
+            self._require(target_frame=target_frame, source_frame=source_frame, fixed_frame=fixed_frame)
             first, _ = self._tree.lookup(fixed_frame, source_frame, then)
             second, found = self._tree.lookup(target_frame, fixed_frame, now)
         both = compose(second, first)
@@ -102,8 +102,9 @@ class BufferCore:
         with self._lock:
             if target_frame == source_frame:
                 return True, ""
-            wrong = self._complaint(target_frame=target_frame, source_frame=source_frame)
-            return (False, wrong) if wrong else self._is_connected(target_frame, source_frame, stamp)
+            wrong = complaint(self._tree.frames, target_frame=target_frame, source_frame=source_frame)
+            wrong = wrong or self._tree.why_not(target_frame, source_frame, stamp)
+        return not wrong, wrong
 
     def can_transform_full_core(
         self,
@@ -116,13 +117,15 @@ class BufferCore:
         """Return whether there is a transform between two frames at two times; if not, why."""
         then, now = to_nanoseconds(source_time), to_nanoseconds(target_time)
         with self._lock:
-            wrong = self._complaint(
-                target_frame=target_frame, source_frame=source_frame, fixed_frame=fixed_frame
+            wrong = complaint(
+                self._tree.frames,
+                target_frame=target_frame,
+                source_frame=source_frame,
+                fixed_frame=fixed_frame,
             )
-            if wrong:
-                return False, wrong
-            answer = self._is_connected(target_frame, fixed_frame, now)
-            return self._is_connected(fixed_frame, source_frame, then) if answer[0] else answer
+            wrong = wrong or self._tree.why_not(target_frame, fixed_frame, now)
+            wrong = wrong or self._tree.why_not(fixed_frame, source_frame, then)
+        return not wrong, wrong
 
     def get_latest_common_time(self, target_frame: str, source_frame: str, /) -> Time:
         """Return the latest time for which there is a transform between two frames; 0 if all are static.
@@ -131,7 +134,7 @@ class BufferCore:
         """
         with self._lock:
             for frame in (target_frame, source_frame):
-                messages.validate(frame, "get_latest_common_time", frame in self._tree.frames)
+                require(frame, self._tree.frames, "get_latest_common_time")
             return Time(nanoseconds=self._tree.latest_common_time(target_frame, source_frame))
 
     def lookupVelocityCore(
@@ -157,8 +160,8 @@ class BufferCore:
         """Return how a frame moves in another, expressed in a third one, for a point in a fourth."""
         interval = to_nanoseconds(averaging_interval, "duration")
         with self._lock:
-            self._validate(target_frame=observation_frame, source_frame=tracking_frame)
-            self._validate(target_frame=reference_frame, source_frame=reference_point_frame)
+            self._require(target_frame=observation_frame, source_frame=tracking_frame)
+            self._require(target_frame=reference_frame, source_frame=reference_point_frame)
             return twist_between(
                 self._tree, tracking_frame, observation_frame, reference_frame, reference_point,
                 reference_point_frame, to_nanoseconds(time), interval,
@@ -202,30 +205,11 @@ class BufferCore:
         """Return the names of the frames on the way from the source to the target."""
         then, now = to_nanoseconds(source_time), to_nanoseconds(target_time)
         with self._lock:
-            self._validate(target_frame=target_frame, source_frame=source_frame, fixed_frame=fixed_frame)
+            self._require(target_frame=target_frame, source_frame=source_frame, fixed_frame=fixed_frame)
             there = self._tree.chain(fixed_frame, source_frame, then)
             back = self._tree.chain(fixed_frame, target_frame, now)
         return without_detour(there, back)
 
-    def _validate(self, **frames: str) -> None:
+    def _require(self, **frames: str) -> None:
         for argument, frame in frames.items():
-            messages.validate(frame, f"lookupTransform argument {argument}", frame in self._tree.frames)
-
-    def _complaint(self, **frames: str) -> str:
-        """The first thing that is wrong with the names of frames; empty if they are right."""
-        for argument, frame in frames.items():
-            wrong = messages.invalid_name(frame)
-            if not wrong and frame not in self._tree.frames:
-                wrong = "frame does not exist"
-            if wrong:
-                return f'Invalid frame ID "{frame}" passed to canTransform argument {argument} - {wrong}'
-        return ""
-
-    def _is_connected(self, target: str, source: str, stamp: int) -> tuple[bool, str]:
-        if target == source:
-            return True, ""
-        try:
-            self._tree.walk(target, source, stamp or self._tree.latest_common_time(target, source))
-        except TransformException as error:
-            return False, str(error)
-        return True, ""
+            require(frame, self._tree.frames, f"lookupTransform argument {argument}")

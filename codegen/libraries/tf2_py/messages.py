@@ -11,7 +11,6 @@ from geometry_msgs.msg import Transform as TransformMessage
 from rclpy.logging import get_logger
 from std_msgs.msg import Header
 
-from tf2_py.exceptions import InvalidArgumentException, LookupException
 from tf2_py.transforms import Transform, normalized
 
 NANOSECONDS = 10**9
@@ -105,27 +104,3 @@ def report_old(child: str, stamp: str, authority: str) -> None:
         f"TF_OLD_DATA ignoring data from the past for frame {child} at time {stamp} according to authority "
         f"{authority}\nPossible reasons are listed at http://wiki.ros.org/tf/Errors%20explained"
     )
-
-
-def invalid_name(frame: Any) -> str:
-    """Say what is wrong with the name of a frame; nothing if it is right.
-
-    :raises TypeError: if it is not a string.
-    """
-    if not isinstance(frame, str):
-        raise TypeError(f"the name of a frame must be a str, got {frame!r}")
-    if not frame:
-        return "in tf2 frame_ids cannot be empty"
-    return "in tf2 frame_ids cannot start with a '/'" if frame[0] == "/" else ""
-
-
-def validate(frame: str, argument: str, is_known: bool) -> None:
-    """Refuse the name of a frame that a lookup cannot use.
-
-    :raises InvalidArgumentException: if no frame can have this name.
-    :raises LookupException: if no frame has it.
-    """
-    if wrong := invalid_name(frame):
-        raise InvalidArgumentException(f'Invalid argument "{frame}" passed to {argument} - {wrong}')
-    if not is_known:
-        raise LookupException(f'"{frame}" passed to {argument} does not exist. ')

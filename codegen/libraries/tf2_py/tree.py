@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from tf2_py.caches import Cache, Edge, StaticCache, TimeCache
-from tf2_py.exceptions import ConnectivityException, ExtrapolationException, LookupException
+from tf2_py.exceptions import (
+    ConnectivityException,
+    ExtrapolationException,
+    LookupException,
+    TransformException,
+)
 from tf2_py.transforms import IDENTITY, Transform, compose, invert, normalized
 
 # A path of more transforms to a root is a loop.
@@ -64,6 +69,15 @@ class FrameTree:
                 way_back = compose(transform, way_back)
             result = compose(invert(way_back), result)
         return normalized(result) or result, stamp
+
+    def why_not(self, target: str, source: str, stamp: int) -> str:
+        """Return why there is no transform from source to target; empty if there is one."""
+        if target != source:
+            try:
+                self.walk(target, source, stamp or self.latest_common_time(target, source))
+            except TransformException as error:
+                return str(error)
+        return ""
 
     def walk(self, target: str, source: str, stamp: int) -> tuple[list[Edge], list[Edge]]:
         """Return the transforms on the way up from the source, and from the target, to where these meet.

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rclpy.clock import Clock, JumpThreshold, TimeJump
-from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.logging import get_logger
-from rclpy.task import Future
 from tf2_msgs.srv import FrameGraph
-from tf2_py import BufferCore, InvalidArgumentException, TransformException
+from tf2_py import BufferCore
 
 from tf2_ros.buffer_interface import BufferInterface
+from tf2_ros.waiting import Waiting, is_time
 
 if TYPE_CHECKING:
     from geometry_msgs.msg import TransformStamped
     from rclpy.node import Node
+    from rclpy.task import Future
     from tf2_py.buffer_core import DurationLike, TimeLike
 
 
@@ -34,8 +32,7 @@ class Buffer(BufferCore, BufferInterface):
     def __init__(self, cache_time: DurationLike | None = None, node: Node | None = None) -> None:
         BufferCore.__init__(self, cache_time)
         BufferInterface.__init__(self)
-        # Called after each new transform; keys are whatever is waiting.
-        self._waiting: dict[object, Callable[[], None]] = {}
+        self._waiting = Waiting()
         if node is not None:
             self.srv = node.create_service(FrameGraph, "tf2_frames", self.__get_frames)
         self.clock = Clock() if node is None else node.get_clock()
@@ -51,20 +48,15 @@ class Buffer(BufferCore, BufferInterface):
         get_logger("tf2_buffer").warning("Detected jump back in time. Clearing tf buffer.")
         self.clear()
 
-    def set_transform(self, transform: TransformStamped, authority: str, /) -> None:
+    def set_transform(self, transform: TransformStamped, authority: str) -> None:
         """Store a transform, and wake those who wait for it."""
         super().set_transform(transform, authority)
-        self._call_new_data_callbacks()
+        self._waiting.wake()
 
-    def set_transform_static(self, transform: TransformStamped, authority: str, /) -> None:
+    def set_transform_static(self, transform: TransformStamped, authority: str) -> None:
         """Store a transform that holds at all times, and wake those who wait for it."""
         super().set_transform_static(transform, authority)
-        self._call_new_data_callbacks()
-
-    def _call_new_data_callbacks(self) -> None:
-        if self._waiting:
-            for callback in list(self._waiting.values()):
-                callback()
+        self._waiting.wake()
 
     def lookup_transform(
         self,
@@ -79,8 +71,8 @@ class Buffer(BufferCore, BufferInterface):
         :param timeout: how long to wait for it, while another thread fills the buffer.
         :raises TransformException: as `lookup_transform_core`, also after the timeout.
         """
-        if _is_time(timeout):
-            self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
+        if is_time(timeout):
+            self._waiting.until(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
     async def lookup_transform_async(
@@ -100,8 +92,8 @@ class Buffer(BufferCore, BufferInterface):
     ) -> TransformStamped:
         """Return the transform between two frames at two times; the fixed frame does not move in between."""
         ends = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        if _is_time(timeout):
-            self._wait(lambda: self.can_transform_full_core(*ends), timeout)
+        if is_time(timeout):
+            self._waiting.until(lambda: self.can_transform_full_core(*ends), timeout)
         return self.lookup_transform_full_core(*ends)
 
     async def lookup_transform_full_async(
@@ -126,7 +118,9 @@ class Buffer(BufferCore, BufferInterface):
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
         """Return whether there is a transform; with `return_debug_tuple` also why not."""
-        answer = self._wait(lambda: self.can_transform_core(target_frame, source_frame, time), timeout)
+        answer = self._waiting.until(
+            lambda: self.can_transform_core(target_frame, source_frame, time), timeout
+        )
         return answer if return_debug_tuple else answer[0]
 
     def can_transform_full(
@@ -141,14 +135,14 @@ class Buffer(BufferCore, BufferInterface):
     ) -> bool | tuple[bool, str]:
         """Return whether there is a transform between two frames at two times."""
         ends = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        answer = self._wait(lambda: self.can_transform_full_core(*ends), timeout)
+        answer = self._waiting.until(lambda: self.can_transform_full_core(*ends), timeout)
         return answer if return_debug_tuple else answer[0]
 
     def wait_for_transform_async(
         self, target_frame: str, source_frame: str, time: TimeLike
     ) -> Future[TransformStamped]:
         """Return a future that gets the transform as soon as there is one."""
-        return self._future(lambda: self.lookup_transform_core(target_frame, source_frame, time))
+        return self._waiting.future(lambda: self.lookup_transform_core(target_frame, source_frame, time))
 
     def wait_for_transform_full_async(
         self,
@@ -160,51 +154,4 @@ class Buffer(BufferCore, BufferInterface):
     ) -> Future[TransformStamped]:
         """Return a future that gets the transform between two frames at two times as soon as there is one."""
         ends = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        return self._future(lambda: self.lookup_transform_full_core(*ends))
-
-    def _wait(self, ask: Callable[[], tuple[bool, str]], timeout: Duration) -> tuple[bool, str]:
-        """Ask again after each new transform, until the answer is yes or the time is up."""
-        answer = ask()
-        if answer[0] or not _is_time(timeout):
-            return answer
-        clock = Clock(clock_type=ClockType.STEADY_TIME)
-        end = clock.now() + timeout
-        arrived = threading.Event()
-        self._waiting[arrived] = arrived.set
-        try:
-            while not (answer := ask())[0]:
-                left = (end - clock.now()).nanoseconds * 1e-9
-                if left <= 0 or not arrived.wait(min(left, threading.TIMEOUT_MAX)):
-                    return ask()
-                arrived.clear()
-        finally:
-            del self._waiting[arrived]
-        return answer
-
-    def _future(self, lookup: Callable[[], TransformStamped]) -> Future[TransformStamped]:
-        future: Future[Any] = Future()
-
-        def attempt() -> None:
-            try:
-                transform = lookup()
-            except InvalidArgumentException as error:  # no transform will ever help
-                if self._waiting.pop(future, None):
-                    future.set_exception(error)
-            except TransformException:
-                pass
-            else:
-                # Transforms may arrive on several threads: one of them completes it.
-                if self._waiting.pop(future, None):
-                    future.set_result(transform)
-
-        self._waiting[future] = attempt
-        future.add_done_callback(lambda done: self._waiting.pop(done, None))
-        attempt()
-        return future
-
-
-def _is_time(timeout: Any) -> bool:
-    """Whether there is any time to wait."""
-    if not isinstance(timeout, Duration):
-        raise TypeError(f"timeout must be an rclpy.duration.Duration, got {timeout!r}")
-    return timeout.nanoseconds > 0
+        return self._waiting.future(lambda: self.lookup_transform_full_core(*ends))
