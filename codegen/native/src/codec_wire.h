@@ -77,20 +77,23 @@ bool last_texts_read(last_texts *, payload *, uint32_t count, PyObject **texts);
 bool last_texts_write(const last_texts *, codec_buffer *, PyObject *texts); /* the same, of a list; false without room, too */
 void last_texts_keep(last_texts *, const uint8_t *bytes, size_t size, PyObject *texts);
 
-/* codec_arrays.c: many numbers, which numpy and array.array hold. */
+/* codec_numpy.c: many numbers, which numpy holds. */
 /* Whether a message was left because of an array before numpy was known, and it is now. Imports numpy, so nothing half-done
  * may be around. */
 bool arrays_try_again(void);
 codec_outcome array_write(codec_buffer *, PyObject *, number_type, size_t count);
 codec_outcome array_read(payload *, number_type, size_t count, PyObject **);
+PyObject *array_copy(PyObject *, number_type); /* as numpy makes it; NULL without an error unless it has one dimension */
+codec_outcome view_read(const payload *, number_type, size_t count, const uint8_t *start, PyObject **);
+
+/* codec_arrays.c: many numbers, which array.array holds. */
+/* Large ones are not copied yet, but noted. False with a Python error. */
+bool numbers_write(codec_buffer *, PyObject *owner, const void *numbers, number_type, size_t count);
 codec_outcome sequence_write(codec_buffer *, PyObject *, const row *);
 codec_outcome sequence_read(payload *, number_type, size_t count, PyObject **);
 bool is_sequence(PyObject *); /* an array.array */
 /* array.array(typecode, values); it takes a tenth of the time where the values are floats or ints in a list or a tuple. */
 PyObject *sequence_of_items(PyObject *typecode, PyObject *values);
-/* A copy of a numpy array with one dimension, of an array.array: as their own functions make it. NULL without an error where
- * it is something else. */
-PyObject *array_copy(PyObject *, number_type);
-PyObject *sequence_copy(PyObject *);
+PyObject *sequence_copy(PyObject *); /* as it makes it itself; NULL without an error where it is something else */
 
 #endif
