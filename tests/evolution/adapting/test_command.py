@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -315,3 +316,39 @@ def test_the_tests_fail_until_all_is_decided(ifgen: Run, git: Git, transport: st
     )
     Path(module).write_text(text)
     assert "5 passed" in results()
+
+
+@pytest.mark.slow
+def test_both_type_checkers_report_what_is_open_and_nothing_else(ifgen: Run) -> None:
+    write(Path("pyproject.toml"), '[tool.ifgen]\npaths = ["interfaces"]\n')
+    cell, pack = "float32 voltage  # [V]\nint8 gone\n", "Cell[] cells\nint8[] a\nstring[2] b\nbyte[] c\n"
+    write(Path("old/robot_msgs/msg/Cell.msg"), cell)
+    write(Path("old/robot_msgs/msg/Pack.msg"), f"{pack}Cell one\nfloat64[] d\nstring[] e\nbool f\n")
+    write(Path("interfaces/robot_msgs/msg/Cell.msg"), "float32 voltage  # [mV]\n")
+    new = f"{pack}geometry_msgs/Point one\nfloat32[] d\nstring[3] e\nbool[<=1] f\nwstring g\nstd_msgs/Header h\n"
+    write(Path("interfaces/robot_msgs/msg/Pack.msg"), new)
+    toolkit.generate("interfaces", output="generated")
+    module, *_ = written(ifgen("adapt", "robot_msgs/msg/Pack", "--from", "old", "--downgrade"))
+    lines = Path(module).read_text().splitlines()
+    expected = {n for n, line in enumerate(lines, 1) if line.endswith("=undecided(")}
+    expected |= {n + 1 for n, line in enumerate(lines, 1) if line == "    lost("}
+    assert len(expected) > 10
+    search = [
+        str(path) for path in ("generated", ROOT / "generated", ROOT / "codegen", ROOT / "codegen/underlay")
+    ]
+    settings = {"include": ["adapters"], "typeCheckingMode": "strict", "extraPaths": search}
+    write(Path("pyrightconfig.json"), json.dumps(settings))
+    write(Path("mypy.ini"), "[mypy]\nstrict = True\n")
+    environment = os.environ | {"MYPYPATH": ":".join(search)}
+    for command in (
+        [sys.executable, "-m", "mypy", "--config-file", "mypy.ini", "-p", "adapters"],
+        [sys.executable, "-m", "pyright", "--pythonpath", sys.executable],
+    ):
+        done = subprocess.run(
+            command, capture_output=True, text=True, env=environment, timeout=300, check=False
+        )
+        places = re.findall(
+            rf"^ *\S*{re.escape(module)}:(\d+)(?::\d+)?(?: -|:) error", done.stdout, re.MULTILINE
+        )
+        assert set(map(int, places)) == expected, done.stdout
+        assert f"{len(expected)} errors" in done.stdout
