@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -57,45 +58,36 @@ def checked_transform(message: TransformStamped, authority: str) -> tuple[str, s
         rotation.x, rotation.y, rotation.z, rotation.w,
     )  # fmt: skip
     transform = normalized(given)
-    # The sum is NaN for a NaN, and for infinities, for which the values are looked at one by one.
-    sound = transform is not None and not math.isnan(given[0] + given[1] + given[2])
-    if not sound:
-        sound = _reject_numbers(given, transform is not None, child, authority)
+    is_number = not any(map(math.isnan, given[:3]))
+    if transform is not None and is_number and child and parent and child != parent:
+        return child, parent, transform
+    for error in _errors(child, parent, given, authority):
+        _logger.error(error)
+    return None
+
+
+def _errors(child: str, parent: str, given: Transform, authority: str) -> Iterator[str]:
     if child == parent:
-        _logger.error(
+        yield (
             f'TF_SELF_TRANSFORM: Ignoring transform from authority "{authority}" with frame_id and  '
             f'child_frame_id "{child}" because they are the same'
         )
-        sound = False
     if not child:
-        _logger.error(
+        yield (
             f'TF_NO_CHILD_FRAME_ID: Ignoring transform from authority "{authority}" '
             "because child_frame_id not set "
         )
-        sound = False
     if not parent:
-        _logger.error(
+        yield (
             f'TF_NO_FRAME_ID: Ignoring transform with child_frame_id "{child}"  from authority "{authority}" '
             "because frame_id not set"
         )
-        sound = False
-    return (child, parent, transform) if sound and transform is not None else None
-
-
-def _reject_numbers(given: Transform, is_rotation: bool, child: str, authority: str) -> bool:
-    """Whether the numbers are right after all; else the error is in the log."""
-    numbers = " ".join(f"{value:f}" for value in given)
-    x, y, z, rotation = numbers.split(" ", 3)
+    x, y, z, rotation = " ".join(f"{value:f}" for value in given).split(" ", 3)
     head = f'Ignoring transform for child_frame_id "{child}" from authority "{authority}" because of'
     if any(map(math.isnan, given)):
-        _logger.error(f"TF_NAN_INPUT: {head} a nan value in the transform ({x} {y} {z}) ({rotation})")
-        return False
-    if not is_rotation:
-        _logger.error(
-            f"TF_DENORMALIZED_QUATERNION: {head} an invalid quaternion in the transform ({rotation})"
-        )
-        return False
-    return True
+        yield f"TF_NAN_INPUT: {head} a nan value in the transform ({x} {y} {z}) ({rotation})"
+    elif normalized(given) is None:
+        yield f"TF_DENORMALIZED_QUATERNION: {head} an invalid quaternion in the transform ({rotation})"
 
 
 def report_old(child: str, stamp: str, authority: str) -> None:
