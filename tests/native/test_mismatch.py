@@ -39,18 +39,23 @@ def meet(policy: str) -> tuple[dict[str, Any], str]:
 @pytest.mark.parametrize("policy", ["warn", "refuse", "adapt"])
 def test_peers_with_other_definitions(policy: str) -> None:
     seen, warnings = meet(policy)
+    actions = policy if policy == "warn" else "refuse"
+    nodes = ["/robot/mine", "/other"]
     assert sorted(found[:6] for found in seen["heard"]) == [
-        ["action", "/go", "warn", "my_msgs/action/Go_FeedbackMessage", "/robot/mine", "/other"],
-        ["service", "/ask", policy, "my_msgs/srv/Add_Request", "/robot/mine", "/other"],
-        ["service", "/serve", policy, "my_msgs/srv/Add_Request", "/robot/mine", "/other"],
-        ["topic", "/speed", policy, "my_msgs/msg/Speed", "/robot/mine", "/other"],
+        ["action", "/go", actions, "my_msgs/action/Go_FeedbackMessage", *nodes],
+        ["action", "/walk", actions, "my_msgs/action/Go_FeedbackMessage", *nodes],
+        ["service", "/ask", policy, "my_msgs/srv/Add_Request", *nodes],
+        ["service", "/serve", policy, "my_msgs/srv/Add_Request", *nodes],
+        ["topic", "/speed", policy, "my_msgs/msg/Speed", *nodes],
     ]
     described = {found[0]: found[6] for found in seen["heard"]}
     assert described == {"topic": True, "action": True, "service": False}
     delays = [found[-1] for found in seen["heard"]]
     print(f"{policy}: told {min(delays):.2f} to {max(delays):.2f} s after they met")
     assert max(delays) < 10, "within a second, where the machine has time"
-    expected = 5 if policy == "warn" and LIKE == "jazzy" else 4  # a service's requests have bytes left over
+    expected = 6 if policy == "warn" and LIKE == "jazzy" else 5  # a service's requests have bytes left over
+    assert policy == "warn" or seen["goals"] == []
+    assert seen["walk_is_ready"] == (policy == "warn" and LIKE == "jazzy")
     adapted = 3 if policy == "adapt" else 0
     assert (warnings.count("[WARN]"), warnings.count("[INFO]")) == (expected - adapted, adapted), warnings
     received, asked = seen["received"], [seen["requests"], seen["response"]]
@@ -62,6 +67,7 @@ def test_peers_with_other_definitions(policy: str) -> None:
                 "4 bytes of a message of /other were left over after my_msgs/srv/Add_Request. The message was"
             )
             assert warnings.count(rest) == (LIKE == "jazzy"), warnings
+            assert seen["goals"] == ([0.7] if LIKE == "jazzy" else [])
             # Kilted compares types: it connects those of the topic, where only names differ, and no others.
             assert ("not connected" in warnings) == (LIKE == "kilted"), warnings
         case "refuse":

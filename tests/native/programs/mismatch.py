@@ -84,6 +84,17 @@ def serve(node, version, name, requests) -> None:
     node.create_service(Add, name, add)
 
 
+def serve_goals(node, version, name, goals):
+    Go = GOES[version]
+
+    def go(goal):
+        goals.append(goal.request.a)
+        goal.succeed()
+        return Go.Result(b=0.5)
+
+    return ActionServer(node, Go, name, go)
+
+
 def mine() -> None:
     began = time.monotonic()
     heard, received, requests, events = [], [], [], []
@@ -121,7 +132,9 @@ def mine() -> None:
     go_on = node.create_publisher(Tick, "/go_on", 10)
     serve(node, OURS, "/serve", requests)
     client = node.create_client(ADDS[OURS], "/ask")
-    server = ActionServer(node, GOES[OURS], "/go", lambda goal: GOES[OURS].Result())
+    goals = []
+    server = serve_goals(node, OURS, "/go", goals)
+    action = ActionClient(node, GOES[OURS], "/walk")
 
     future = None
     asks = policy == "adapt" and distribution == "jazzy"  # Kilted connects no such services
@@ -131,9 +144,9 @@ def mine() -> None:
         nonlocal future, seen_before
         if future is None and client.service_is_ready():
             future = client.call_async(ADDS[OURS].Request(a=0.1, b=0.2))
-        if policy == "warn" and distribution == "jazzy" and not said:
+        if policy == "warn" and distribution == "jazzy" and not (said and goals):
             return False
-        if len(heard) < 4 or (asks and not (future and future.done() and requests)):
+        if len(heard) < 5 or (asks and not (future and future.done() and requests)):
             return False
         if seen_before is None:
             seen_before = len(ticks)
@@ -162,9 +175,12 @@ def mine() -> None:
                 "requests": requests,
                 "response": response and [response.sum, response.ok],
                 "events": events,
+                "goals": goals,
+                "walk_is_ready": action.server_is_ready(),
             }
         )
     )
+    action.destroy()
     server.destroy()
     node.destroy_node()
     rclpy.shutdown()
@@ -177,6 +193,7 @@ def other() -> None:
     publisher = node.create_publisher(SPEEDS[THEIRS], "/speed", 10)
     tick = node.create_publisher(Tick, "/tick", 10)
     serve(node, THEIRS, "/ask", [])
+    server = serve_goals(node, THEIRS, "/walk", [])
     client = node.create_client(ADDS[THEIRS], "/serve")
     action = ActionClient(node, GOES[THEIRS], "/go")
     asked = []
@@ -192,8 +209,9 @@ def other() -> None:
             publisher.publish(speed(THEIRS))
         node.add.publish(speed(OURS))
         tick.publish(Tick(with_both=publisher is not None))
-        if not asked and client.service_is_ready():
+        if not asked and client.service_is_ready() and action.server_is_ready():
             asked.append(client.call_async(ADDS[THEIRS].Request(a=0.1, b=0.2)))
+            action.send_goal_async(GOES[THEIRS].Goal(a=0.7))
 
     node.create_subscription(Tick, "/go_on", stop, 10)
     node.create_timer(0.02, publish)
@@ -201,6 +219,7 @@ def other() -> None:
         rclpy.spin(node)
     except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
         action.destroy()
+        server.destroy()
 
 
 if __name__ == "__main__":

@@ -20,10 +20,12 @@ def can_adapt(part: Part, type_hash: str) -> bool:
 def applied(policy: OnTypeMismatch, role: str, parts: Iterable[tuple[Part, str]]) -> OnTypeMismatch:
     """The policy for an endpoint that meets somebody, whose hashes of some parts are these.
 
-    A publisher sends whatever others do. Actions cannot be guarded: rclpy keeps their parts to itself.
+    A publisher sends whatever others do. Actions are not adapted.
     """
-    if role == "publisher" or role.startswith("action"):
+    if role == "publisher":
         return OnTypeMismatch.WARN
+    if role.startswith("action"):
+        return policy if policy is OnTypeMismatch.WARN else OnTypeMismatch.REFUSE
     if policy is OnTypeMismatch.ADAPT and not all(can_adapt(part, type_hash) for part, type_hash in parts):
         return OnTypeMismatch.REFUSE
     return policy

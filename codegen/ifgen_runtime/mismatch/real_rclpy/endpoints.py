@@ -184,7 +184,7 @@ class Endpoint:
                 return bool(entity.get_publisher_count())
             case "service client" if self.guard is None:
                 return bool(entity.service_is_ready())
-            case "action client":
+            case "action client" if self.guard is None:
                 return bool(entity.server_is_ready())
             case _:
                 return True

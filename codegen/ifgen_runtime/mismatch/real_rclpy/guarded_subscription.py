@@ -64,12 +64,13 @@ class SubscriptionGuard:
         if raw:
             return taken.data if type_hash == self._part.type_hash else None
         try:
-            return decoded(taken.data, type_hash, self._part.cls)
+            message = decoded(taken.data, type_hash, self._part.cls)
         except Exception as error:  # the user's adapter: what a peer sends must not end the node's spin
-            self._say(
-                f"the adapter from {short(type_hash)} has failed, and the message is dropped: {error!r}"
-            )
+            self._say(f"The adapter from {short(type_hash)} failed, and the message was dropped: {error!r}")
             return None
+        if message is None:
+            self._say(f"A message did not fit its definition, {short(type_hash)}, and was dropped")
+        return message
 
     def call_on_foreign(self, callback: Callable[[IncompatibleType], object] | None, group: Any) -> None:
         """Call back in this callback group when a publisher comes that is refused."""
@@ -99,7 +100,9 @@ class SubscriptionGuard:
     def _say(self, text: str) -> None:
         node = self._node()
         if node is not None and self._said.is_new(text):
-            node.get_logger().error(f"topic '{self._part.topic.removeprefix('rt')}': {text}")
+            node.get_logger().error(
+                f"topic '{self._part.topic.removeprefix('rt')}': {text}. This is said once."
+            )
 
 
 class GuardedSubscription(Subscription):

@@ -77,8 +77,13 @@ def _wrap_add_waitable(nodes: Any) -> None:
             frame = _frame_with(_caller(), "action_name")
             if frame is not None:
                 role = "action client" if hasattr(waitable, "_client_handle") else "action server"
-                name = self.resolve_service_name(frame.f_locals["action_name"])
-                _note(self, waitable, role, name, cls, node_policy(self))
+                name = _action_name(self, role, frame.f_locals["action_name"])
+                policy, guard = node_policy(self), None
+                if policy is not OnTypeMismatch.WARN:
+                    from ifgen_runtime.mismatch.real_rclpy.guarded_action import guard_action  # as above
+
+                    guard = guard_action(self, waitable, role, name, cls)
+                _note(self, waitable, role, name, cls, policy, guard)
 
     nodes.add_waitable = add_and_note
 
@@ -110,6 +115,15 @@ def _note(
 ) -> None:
     endpoint = Endpoint(weakref.ref(node), entity, role, name, cls, policy, guard)
     watch_of(node.context).note(node, endpoint)
+
+
+def _action_name(node: Any, role: str, name: str) -> str:
+    """The full name of an action, which Jazzy does not remap."""
+    remapped = str(node.resolve_service_name(name))
+    count = node.count_subscribers if role == "action client" else node.count_publishers
+    if count(f"{remapped}/_action/feedback"):
+        return remapped
+    return str(node.resolve_service_name(name, only_expand=True))
 
 
 def _name(entity: Any, role: str) -> str:

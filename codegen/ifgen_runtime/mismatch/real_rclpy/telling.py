@@ -92,7 +92,12 @@ class Teller:
         elif say is Say.ALL:
             text = explanation(mismatch)
             if endpoint.policy is OnTypeMismatch.ADAPT and meeting.policy is OnTypeMismatch.REFUSE:
-                text += "\nNo adapter is registered that converts between the two."
+                reason = (
+                    "Actions are not adapted on real rclpy"
+                    if endpoint.kind == "action"
+                    else "No adapter fits"
+                )
+                text += f"\n{reason}, so nothing is exchanged."
             if not endpoint.is_connected():
                 text += "\nThe middleware has not connected them: nothing is delivered between them."
             logger.warning(text)
