@@ -8,10 +8,14 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
+from ifgen.dynamic.describing import Endpoint
+from ifgen.observing import definitions_observer
+from ifgen.observing.definitions_seen import Disagreement, User, Version
 from ifgen_pytest.domains import own_domain
 
 PROGRAM = Path(__file__).with_name("programs") / "robot.py"
@@ -142,6 +146,33 @@ def test_a_definition_comes_from_the_node_where_it_is_not_installed(
     done = doctor(project, domain, "--transport", "local", *running("old", "new"))
     assert "warning[field-added]: robot_msgs/State.batteries.current is new\n" in done.stdout
     assert " --> /monitor:robot_msgs/msg/State.msg:2:14\n" in done.stdout
+
+
+def test_a_silent_node_costs_only_the_detail(project: Path, domain: dict[str, str]) -> None:
+    done = doctor(project, domain, "--transport", "local", *running("old silent", "new"))
+    assert done.returncode == 1
+    assert "topic '/state' has 2 definitions of robot_msgs/msg/State\n" in done.stdout
+    assert "help: what differs is unknown: no node sent the definition\n" in done.stdout
+    assert "ifgen adapt robot_msgs/msg/State --from RIHS01_018ff6a9caff5571\n" in done.stdout
+
+
+def test_the_same_definition_is_asked_of_three_nodes_at_most_and_of_none_twice(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[Endpoint] = []
+    monkeypatch.setattr(
+        definitions_observer, "answers", lambda _, questions, __: asked.extend(questions) or {}
+    )
+    having = {
+        Version("a/msg/B", type_hash): [
+            User(f"/{end}{number % 9}", "publisher", "topic", "/x", "/x", "a/msg/B", type_hash)
+            for number in range(20)
+        ]
+        for end, type_hash in (("old", "RIHS01_" + "a" * 64), ("new", "RIHS01_" + "b" * 64))
+    }
+    found = Disagreement("topic", "/x", having)
+    definitions_observer._definitions(None, [found, replace(found, name="/y")])
+    assert [each.node for each in asked] == ["/old0", "/old1", "/old2", "/new0", "/new1", "/new2"]
 
 
 def test_wrong_usage(project: Path, domain: dict[str, str]) -> None:

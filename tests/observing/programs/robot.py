@@ -1,6 +1,10 @@
-"""One of two nodes with a topic, a service and an action: `robot.py driver old`, `robot.py monitor new`."""
+"""One of two nodes with a topic, a service and an action: `robot.py driver old`, `robot.py monitor new`.
+
+With `silent` at the end it does not spin, so it answers nobody.
+"""
 
 import sys
+import time
 from contextlib import suppress
 
 import ifgen.dynamic
@@ -14,7 +18,7 @@ STATE = "string name\nBattery[<=2] batteries\n"
 MODE = "{} mode\n---\nbool success\n"
 WALK = "float32 distance 0.1\n---\nbool success\n---\nBattery battery\n"
 
-name, version = sys.argv[1:]
+name, version, *how = sys.argv[1:]
 is_new = version == "new"
 battery = {"robot_msgs/msg/Battery": NEW_BATTERY if is_new else BATTERY}
 made = ifgen.dynamic.class_from_text
@@ -37,4 +41,6 @@ else:
     node.create_service(Mode, "set_mode", lambda request, response: response)
     server = ActionServer(node, Walk, "walk", lambda goal: Walk.Result())
 with suppress(KeyboardInterrupt, ExternalShutdownException):
+    while how == ["silent"]:
+        time.sleep(0.1)
     rclpy.spin(node)
