@@ -28,6 +28,7 @@ def project(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / PLACE).write_text(NEW)
     (tmp_path / "pyproject.toml").write_text('[tool.ifgen]\npaths = ["interfaces"]\n')
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("ifgen.evolution.explaining.explanation._PATIENCE", 60.0)  # machines may be busy
     return tmp_path
 
 
@@ -298,6 +299,13 @@ def test_a_definition_that_is_too_large_is_not_compared(project: Path) -> None:
 
     text = explain(asdict(met(bomb("int8 x\n"), bomb("int16 x\n"))))
     assert "the definitions are too large to compare while programs run\n" in text
+
+
+def test_without_time_the_project_alone_is_searched(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ifgen.evolution.explaining.explanation._PATIENCE", 0.0)
+    mismatch = met(made(OLD), made(NEW))
+    assert f" --> {PLACE}:9:7\n" in explain(asdict(mismatch))
+    assert UNKNOWN in explain(without_definition(mismatch))
 
 
 def test_whatever_goes_wrong_the_first_lines_are_there(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from functools import partial
@@ -41,7 +40,7 @@ def observed(programs: Sequence[list[str]], transport: Literal["local", "rclpy",
 
 def findings(seen: Seen, include: Sequence[Path]) -> Iterator[Diagnostic]:
     """The disagreements, each followed by its differences, and a warning about nodes that do not say."""
-    finder = _Finder(seen, Installed(time.monotonic() + _PATIENCE, include))
+    finder = _Finder(seen, Installed(_PATIENCE, include))
     for disagreement in disagreements(seen.users):
         yield from finder.findings(disagreement)
     if nodes := without_hash(seen.users):

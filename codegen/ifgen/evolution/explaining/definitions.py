@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -66,11 +66,12 @@ def of_document(side: Mapping[str, Any]) -> Known | None:
 class Installed:
     """The definitions that are installed, as far as they can be found in time.
 
-    `until` is a moment of `time.monotonic`. `include` are folders besides those of the configuration.
+    `patience` [s] is for all searches together, the first place of each excepted. `include` are folders
+    besides those of the configuration.
     """
 
-    def __init__(self, until: float, include: Sequence[Path] = ()) -> None:
-        self._until = until
+    def __init__(self, patience: float, include: Sequence[Path] = ()) -> None:
+        self._patience = patience
         self._include = include
         self._found: dict[tuple[str, str], Known | None] = {}
 
@@ -84,9 +85,7 @@ class Installed:
     def located(self, source: Source) -> Source:
         """The same source with the path of a file that has its text, if there is one."""
         package, folder, file_name = source.path.parts[-3:]
-        for place in self._with_files:
-            if time.monotonic() > self._until:
-                break
+        for place in self._in_time(self._with_files):
             try:
                 found = place(package)
                 file = found.interface(folder, Path(file_name).stem) if found is not None else None
@@ -95,6 +94,18 @@ class Installed:
             except (InputError, OSError):
                 continue
         return source
+
+    @cached_property
+    def _until(self) -> float:
+        return time.monotonic() + self._patience
+
+    def _in_time(self, every: Iterable[Place]) -> Iterator[Place]:
+        """The places that there is time for, one at least."""
+        until = self._until
+        for place in every:
+            yield place
+            if time.monotonic() > until:
+                break
 
     @cached_property
     def _settings(self) -> Settings:
@@ -109,9 +120,7 @@ class Installed:
 
     def _definitions(self, type_name: str, type_hash: str) -> Iterator[Known]:
         every = [*self._with_files, *places.with_modules(self._settings)]
-        for number, place in enumerate(every):
-            if time.monotonic() > self._until:
-                return
+        for number, place in enumerate(self._in_time(every)):
             try:
                 registry = _resolved(type_name, place, every)
             except (InputError, OSError):
@@ -131,7 +140,7 @@ class Installed:
         except InputError:
             return
         if registry is not None and (known := _fitting(type_name, type_hash, registry)):
-            yield known
+            yield replace(known, place=place)
 
 
 def _fitting(type_name: str, type_hash: str, registry: Registry) -> Known | None:

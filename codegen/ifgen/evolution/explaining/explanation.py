@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -12,7 +11,7 @@ from ifgen.evolution.edits import Category
 from ifgen.evolution.explaining.definitions import Installed, of_document, of_sources
 from ifgen.evolution.explaining.differences import Differences, differences
 
-PATIENCE: Final = 0.5
+_PATIENCE: Final = 0.5
 """Seconds for a search of what is installed: a node waits meanwhile."""
 
 _SHOWN: Final = 5
@@ -43,7 +42,7 @@ def explained(mismatch: Mapping[str, Any]) -> Explanation:
     What its definitions say is not believed before it fits their hashes.
     """
     mine, theirs = mismatch["mine"], mismatch["theirs"]
-    installed = Installed(time.monotonic() + PATIENCE)
+    installed = Installed(_PATIENCE)
     type_name = mismatch["type_name"]
     old = (
         of_sources(theirs, type_name, theirs["node"])

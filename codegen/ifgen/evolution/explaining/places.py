@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from ifgen import resources
 from ifgen.config.settings import Settings
@@ -28,7 +28,7 @@ from ifgen.reading.search_path import SearchPath
 Place: TypeAlias = Callable[[str], PackageFiles | None]
 """Returns the package of a name, if it is there."""
 
-_SOURCE = "\n__source__ = "
+_SOURCE: Final = "\n__source__ = "
 
 
 def with_files(settings: Settings) -> Iterator[Place]:
