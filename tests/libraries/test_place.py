@@ -73,3 +73,27 @@ def test_packages_of_nodes_that_pip_installed_find_them(ros: Path) -> None:
 def test_packages_of_messages_that_pip_installed_leave_sys_path_alone(ros: Path) -> None:
     program = "import sys; from ifgen_runtime.importing import ensure_importable as e; e('std_msgs'); print(sys.path)"
     assert "libraries" not in run(program, ros)
+
+
+def test_tf2_stands_on_what_upstreams_tf2_py_has() -> None:
+    """A ROS may have only some of the packages: tf2_py has no submodules there, and its BufferCore refuses None."""
+    program = """
+import sys, types, ifgen
+ifgen.activate("local")
+import tf2_py as ours
+
+class BufferCore(ours.BufferCore):
+    def __init__(self, *cache_time):
+        assert None not in cache_time
+        super().__init__(*cache_time)
+
+upstreams = types.ModuleType("tf2_py")
+vars(upstreams).update({name: getattr(ours, name) for name in ours.__all__}, BufferCore=BufferCore)
+for name in [name for name in sys.modules if name.startswith("tf2_py")]:
+    del sys.modules[name]
+sys.modules["tf2_py"] = upstreams
+import tf2_ros, tf2_geometry_msgs
+assert isinstance(tf2_ros.Buffer(), BufferCore)
+print(tf2_ros.Buffer(tf2_ros.Duration(seconds=1)).all_frames_as_yaml())
+"""
+    assert run(program) == "[]"

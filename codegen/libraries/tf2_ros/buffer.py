@@ -30,7 +30,8 @@ class Buffer(BufferCore, BufferInterface):
     """
 
     def __init__(self, cache_time: DurationLike | None = None, node: Node | None = None) -> None:
-        BufferCore.__init__(self, cache_time)
+        # The real BufferCore, which may be beside this package, does not take None.
+        BufferCore.__init__(self, *([] if cache_time is None else [cache_time]))
         BufferInterface.__init__(self)
         self._waiting = Waiting()
         if node is not None:
