@@ -46,7 +46,7 @@ def meet_on_topic(writer: Writer, reader: Reader) -> tuple[Encounter, Origin | N
     if wanted == _ADAPT:
         adapter = _adapter(writer.message_type, reader.message_type)
         policy = _REFUSE if adapter is None else _ADAPT
-    origin = None if policy == _REFUSE else Origin(f"topic '{reader.topic}'", writer.node, adapter)
+    origin = None if policy == _REFUSE else Origin("topic", reader.topic, writer.node, adapter)
     return Encounter(reader, writer, wanted, policy), origin
 
 
@@ -102,4 +102,4 @@ def _adapter(theirs: MessageType, mine: MessageType) -> Adapter | None:
 
 
 def _origin(peer: ServiceEndpoint, adapter: Adapter | None = None) -> Origin:
-    return Origin(f"service '{peer.name}'", peer.node, adapter)
+    return Origin("service", peer.name, peer.node, adapter)

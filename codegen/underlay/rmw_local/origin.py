@@ -21,22 +21,24 @@ if TYPE_CHECKING:
     from rmw_local.graph import GraphNode
 
 _ONCE = "This is said once."
+_OURS = {"ifgen_runtime", "rmw_local"}  # folders whose code is not what failed
 _PADDING = 4  # DDS fills messages up to a multiple of this
 
 
 class Origin:
     """A peer whose messages are read with care, and the number of those that were not as expected.
 
-    `where` is `topic '/name'`, as warnings have it. With an adapter, messages are of the version of its old
-    class. `is_raw` says that the peer publishes bytes that somebody else made. Each kind of trouble is said
-    once.
+    `kind` and `name` are those of a topic or a service. With an adapter, messages are of the version of its
+    old class. `is_raw` says that the peer publishes bytes that somebody else made. Each kind of trouble is
+    said once.
     """
 
     def __init__(
-        self, where: str, peer: GraphNode, adapter: Adapter | None = None, *, is_raw: bool = False
+        self, kind: str, name: str, peer: GraphNode, adapter: Adapter | None = None, *, is_raw: bool = False
     ) -> None:
         self.counts: Counter[str] = Counter()
-        self._where = where
+        self._name = name
+        self._where = f"{kind} '{name}'"
         self._peer = peer.full_name
         self._is_raw = is_raw
         self._adapter = adapter
@@ -99,15 +101,16 @@ class Origin:
         return "Its definition of the type differs. "
 
     def _drop_unconverted(self, error: Exception, node: GraphNode) -> None:
-        frames = extract_tb(error.__traceback__)[1:]
-        place = f" ({Path(frames[0].filename).name}:{frames[0].lineno})" if frames else ""
+        files = [(Path(frame.filename), frame.lineno) for frame in extract_tb(error.__traceback__)]
+        theirs = [f" ({file.name}:{line})" for file, line in files if not _OURS.intersection(file.parts)]
+        place = theirs[-1] if theirs else ""
         text = f"The adapter for {self._peer} failed with {type(error).__name__}: {error}{place}"
         self._drop("not converted", text, "", node)
 
     def _drop(self, trouble: str, text: str, reason: str, node: GraphNode) -> None:
         watching = observer.current()
         if watching is not None:
-            watching.undelivered(self._where.split("'")[1], 1, f"{trouble}, from {self._peer}")
+            watching.undelivered(self._name, 1, f"{trouble}, from {self._peer}")
         if self._is_first(trouble):
             report.say(node, f"{self._where}: {text}. It was dropped. {reason}{_ONCE}")
 

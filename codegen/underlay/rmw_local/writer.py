@@ -138,7 +138,7 @@ class Writer(Endpoint):
 
         with self.node.participant.domain.lock:
             if self._own_origin is None:
-                self._own_origin = Origin(f"topic '{self.topic}'", self.node, is_raw=True)
+                self._own_origin = Origin("topic", self.topic, self.node, is_raw=True)
                 self.readers = tuple(self._receiver(known.end, None) for known in self.readers)
                 self.settle_route()
 

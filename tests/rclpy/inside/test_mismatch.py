@@ -256,7 +256,7 @@ def test_whatever_the_bytes_are_reading_them_ends_well() -> None:
         f"bool b\nstring s\nwstring<=3 w\nuint8[] d\nfloat64[<=3] f\nstring[] n\nPart[] p\nint16[3] a\n{part}",
     )
     kind, place, draw = message_type(cls), node("n").handle.graph_node, random.Random(1)
-    origin = Origin("topic '/t'", place)
+    origin = Origin("topic", "/t", place)
     whole = serialize(
         cls(b=True, s="é", w="ab", d=[1, 2], f=[0.1], n=["", "c"], p=[cls.__nested__[0](y="y")], a=[1, 2, 3])
     )
