@@ -10,6 +10,7 @@ import copyreg
 import sys
 from collections import deque
 from dataclasses import dataclass
+from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import TYPE_CHECKING, Any, Never, TypeVar
@@ -162,7 +163,16 @@ def unchanged(message: MessageT) -> MessageT:
 
 
 def _hash_of(cls: type[Any]) -> str:
-    return getattr(cls, "__type_hash__", "")  # rosidl's compiled classes have none
+    found: str | None = getattr(cls, "__type_hash__", None)
+    return _hash_of_compiled(cls) if found is None else found
+
+
+@cache
+def _hash_of_compiled(cls: type[Any]) -> str:
+    """The type hash of a class of rosidl's, which does not know it."""
+    from ifgen_runtime.type_description import type_hash  # most programs have no such class here
+
+    return type_hash(cls)
 
 
 def _chain(type_hash: str, cls: type[Any]) -> Adapter | None:

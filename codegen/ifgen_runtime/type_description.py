@@ -5,6 +5,8 @@ Works for generated classes, ours and rosidl's, since it asks them for their fie
 
 from __future__ import annotations
 
+import hashlib
+import json
 from typing import Any, Final
 
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
@@ -40,6 +42,15 @@ def describe(cls: type[Any]) -> dict[str, Any]:
         "type_description": _individual(cls),
         "referenced_type_descriptions": [_individual(referenced) for referenced in _referenced_classes(cls)],
     }
+
+
+def type_hash(cls: type[Any]) -> str:
+    """The type hash (`RIHS01_...`) of an interface class, also of one that does not know its own."""
+    document = describe(cls)
+    for described in (document["type_description"], *document["referenced_type_descriptions"]):
+        for field in described["fields"]:
+            del field["default_value"]
+    return f"RIHS01_{hashlib.sha256(json.dumps(document).encode()).hexdigest()}"
 
 
 def sources(cls: type[Any]) -> list[tuple[str, str, str]]:

@@ -207,6 +207,38 @@ def test_folders_that_cannot_be_written(ifgen: Run) -> None:
 
 
 @pytest.mark.usefixtures("versions")
+def test_files_that_are_there_already(ifgen: Run) -> None:
+    """The package is the user's, and a frozen module has to be the one that belongs there."""
+    package = write(Path("adapters/__init__.py"), '"""Mine."""\n')
+    module, _, frozen = written(ifgen("adapt", TYPE, "--from", "v1"))
+    Path(module).unlink()
+    Path(frozen).write_text("# another one\n")
+    done = ifgen("adapt", TYPE, "--from", "v1")
+    assert done.code == 2
+    assert done.err.startswith(f"error[existing-file]: {frozen} exists, and is not the frozen {TYPE}\n")
+    assert not Path(module).exists()
+    Path(frozen).unlink()
+    done = ifgen("adapt", TYPE, "--from", "v1")
+    assert f"adapters/__init__.py is yours: add `from . import {Path(module).stem}` to it\n" in done.out
+    assert package.read_text() == '"""Mine."""\n'
+
+
+@pytest.mark.usefixtures("versions")
+def test_a_description_that_holds_a_part_of_a_service(ifgen: Run) -> None:
+    document = json.loads(ifgen("show", "--json", TYPE).out)
+    nested = {"type_id": 1, "capacity": 0, "string_capacity": 0, "nested_type_name": "a_msgs/srv/A_Request"}
+    field = {"name": "part", "type": nested, "default_value": ""}
+    part = {"type_name": "a_msgs/srv/A_Request", "fields": document["type_description"]["fields"].copy()}
+    document["type_description"]["fields"].append(field)
+    document["referenced_type_descriptions"].append(part)
+    write(Path("part.json"), json.dumps(document))
+    done = ifgen("adapt", TYPE, "--from", "part.json")
+    assert done.code == 1 and done.err.startswith(
+        f"error[invalid-description]: {TYPE} holds a_msgs/srv/A_Request"
+    )
+
+
+@pytest.mark.usefixtures("versions")
 def test_the_folder_can_be_configured(ifgen: Run) -> None:
     write(Path("pyproject.toml"), '[tool.ifgen]\npaths = ["interfaces"]\nadapters = "src/robot/adapters"\n')
     assert written(ifgen("adapt", TYPE, "--from", "v1"))[0].startswith("src/robot/adapters/speed_")

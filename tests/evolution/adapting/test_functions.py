@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -11,6 +12,8 @@ from typing import Any
 import pytest
 from ifgen_runtime.adapters import UndecidedError, adapter_for, decode
 from ifgen_runtime.codec import serialize
+
+from tests.cli.conftest import write
 
 from .conftest import Adapt
 
@@ -232,3 +235,19 @@ def test_actions_have_an_adapter_for_each_part(adapt: Adapt) -> None:
         data = serialize(getattr(old, part)(**values))
         assert decode(data, old.__type_hash__, cls) == cls(**values)
     assert adapter_for(old.__type_hash__, module.Walk.Result) is not None
+
+
+def test_names_that_are_taken(adapt: Adapt, tmp_path: Path) -> None:
+    """Two types of one name, and one that is called as what the module imports."""
+    for folder, type_ in (("old", "int8"), ("interfaces", "int16")):
+        write(tmp_path / folder / "their_msgs/msg/Adapter.msg", f"{type_} a\n")
+        for number in range(6):
+            write(tmp_path / folder / f"their_msgs/msg/ALongNameOfAType{number}.msg", f"{type_} a\n")
+    others = "".join(f"their_msgs/ALongNameOfAType{number} x{number}\n" for number in range(6))
+    text = f"their_msgs/Adapter first\nAdapter second\n{others}"
+    old, new = ({"msg/Adapter.msg": f"{type_} b\n", "msg/T.msg": text} for type_ in ("int32", "int64"))
+    module: Any = adapt(old, new, "msg/T")
+    assert questions(module) == []
+    made = module.upgrade(next(cls for name, cls in vars(module).items() if name.startswith("T_"))())
+    assert (made.first.a, made.second.b) == (0, 0)
+    importlib.import_module(f"adapters.test_adapt_{module.__name__.partition('.')[2]}")

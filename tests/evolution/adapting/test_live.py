@@ -48,3 +48,30 @@ def test_nodes_of_both_versions_understand_each_other(ifgen: Run, transport: str
     if actions:
         lines.append("robot_msgs.action.Walk_Result(result=9) robot_msgs.action.Walk_Feedback(feedback=3)")
     assert done.stdout.splitlines() == lines, done.stderr
+
+
+COMPILED = """
+from std_msgs.msg import String
+from ifgen_runtime.adapters import AdapterError, decode
+from ifgen_runtime.codec import serialize
+from ifgen_runtime.type_description import type_hash
+data = serialize(String(data="0.1"))
+print(decode(data, "{type_hash}", String).data, type_hash(String) == "{type_hash}")
+try:
+    decode(data, "RIHS01_0", String)
+except AdapterError as error:
+    print(error)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("transport", ["local", "rclpy"])
+def test_bytes_of_compiled_classes_are_read(ifgen: Run, transport: str) -> None:
+    """On real rclpy, the classes of ROS do not know their hashes."""
+    known = ifgen("hash", "std_msgs/msg/String").out.split()[1]
+    write(Path("program.py"), COMPILED.format(type_hash=known))
+    command = [sys.executable, "-m", "ifgen", "run", "--transport", transport, "program.py"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    first, second = done.stdout.splitlines()
+    assert first == "0.1 True"
+    assert second.startswith(f"no adapter from 0 to String {known[7:15]} is registered: ")

@@ -60,6 +60,7 @@ def adapt(type_: str, reference: str, downgrade: bool, output: Path | None, incl
     planned = plan(type_, reference, settings.paths, settings.include, base, downgrade=downgrade)
     if (folder / planned.module.path).exists():
         raise UsageError([_existing(folder, planned)])
+    _check_frozen(folder, planned)
     templates = Templates(settings.custom)
     artifacts = (planned.module, planned.tests, *planned.shared)
     texts = {
@@ -79,6 +80,16 @@ def _existing(folder: Path, planned: Planned) -> Diagnostic:
     return Diagnostic("existing-file", f"{shown_path(path)} exists, and is yours", help=help)
 
 
+def _check_frozen(folder: Path, planned: Planned) -> None:
+    """Raise UsageError if a file is where a frozen module belongs, and is another one."""
+    hashes = planned.versions.old_hashes
+    for artifact, interface in zip(planned.shared[1:], planned.versions.frozen, strict=True):
+        path = folder / artifact.path
+        if path.exists() and hashes.of(interface) not in path.read_text(encoding="utf-8", errors="replace"):
+            message = f"{shown_path(path)} exists, and is not the frozen {interface.type_name}"
+            raise UsageError([Diagnostic("existing-file", message, help="move it away")])
+
+
 def _report(texts: Mapping[Path, str], folder: Path, planned: Planned) -> None:
     for path, text in texts.items():
         is_module = path == folder / planned.module.path
@@ -87,6 +98,10 @@ def _report(texts: Mapping[Path, str], folder: Path, planned: Planned) -> None:
         print("there is no test: these messages are too large to be tried")
     elif folder / planned.tests.path not in texts:
         print(f"kept {shown_path(folder / planned.tests.path)}")
+    package = folder / planned.shared[0].path
+    if "import_all" not in package.read_text(encoding="utf-8", errors="replace"):
+        module = planned.module.path.removesuffix(".py")
+        print(f"{shown_path(package)} is yours: add `from . import {module}` to it")
     for line in _earlier(folder, planned):
         print(line)
     steps = f"`pytest {shown_path(folder)}`, then import the package where your program starts"

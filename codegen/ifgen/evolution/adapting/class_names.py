@@ -8,6 +8,7 @@ from ifgen.generator_py.adapters.frozen import short
 from ifgen.generator_py.imports import Names
 from ifgen.generator_py.names import interface_name
 
+_RUNTIME = "ifgen_runtime.adapters"
 _WIDTH = 88
 """The default of ruff: the module is formatted for any project."""
 
@@ -18,7 +19,7 @@ class ClassNames:
     def __init__(self, versions: TwoVersions) -> None:
         self._versions = versions
         self._names = Names({})
-        self._known: dict[str, str] = {}
+        self._known = {"Adapter": _RUNTIME}
 
     def of(self, message: Message, *, is_old: bool) -> str:
         """The name of the class of a message, as it was or as it is."""
@@ -36,7 +37,7 @@ class ClassNames:
 
     def runtime(self, name: str) -> None:
         """Import a name of the runtime's adapters."""
-        self._names.add("ifgen_runtime.adapters", name)
+        self._names.add(_RUNTIME, name)
 
     def _spelling(self, module: str, name: str, spelling: str) -> str:
         if self._known.setdefault(spelling, module) != module:

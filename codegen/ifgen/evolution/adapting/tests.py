@@ -12,6 +12,7 @@ from ifgen.evolution.adapting.versions import TwoVersions
 from ifgen.evolution.edits import Versions
 from ifgen.generator_py.adapters.context import AdapterCase, AdapterTests, CheckText
 from ifgen.generator_py.adapters.strategies import OldStrategies
+from ifgen.generator_py.imports import import_statement
 from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.tests.strategies import Strategies, enclosed
 
@@ -34,7 +35,7 @@ def adapter_tests(
         title=f"Tests of {module}: written once by `ifgen adapt`, yours now.",
         module=module,
         imports=tuple(sorted({*old.imports, *new.imports})),
-        frozen=tuple(sorted(old.frozen)),
+        own_import=import_statement(".", sorted(old.frozen)),
         values=tuple({**dict(old.values), **dict(new.values)}.items()),
         strategies=tuple({**dict(old.messages), **dict(new.messages)}.items()),
         checks=tuple(_checks(functions)),

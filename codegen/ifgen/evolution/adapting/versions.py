@@ -9,6 +9,7 @@ from functools import cached_property
 from ifgen.definition.interfaces import Field, Interface, Message, Registry
 from ifgen.definition.type_description import TypeHashes, referenced_types
 from ifgen.definition.types import CollectionType, FieldType, NamespacedType
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.evolution.adapting.meaning import question
 from ifgen.evolution.messages import paired_fields
 from ifgen.generator_py.adapters.frozen import FrozenFacts
@@ -51,8 +52,13 @@ class TwoVersions:
         held: dict[str, Interface] = {}
         for item in referenced_types(self.old, self.old_registry):
             name = f"{item.package}/{item.folder}/{interface_name(item)}"
-            if name != self.old.type_name:
-                held[name] = self.old_registry.interface(name)
+            if name == self.old.type_name:
+                continue
+            interface = self.old_registry.get(name)
+            if interface is None:  # only a description can say so
+                message = f"{self.old.type_name} holds {item.type_name}, a part of something else"
+                raise InputError([Diagnostic("invalid-description", message)])
+            held[name] = interface
         return self.old, *(interface for interface in held.values() if not self._is_today(interface))
 
     def _is_today(self, interface: Interface) -> bool:

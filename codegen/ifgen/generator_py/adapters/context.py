@@ -119,14 +119,14 @@ class AdapterCase:
 class AdapterTests:
     """The tests of a module of adapters; `module` is its name.
 
-    `imports` are modules of message classes, and `frozen` those of frozen ones. `values` and `strategies` are
-    those of hypothesis, as (name, strategy).
+    `imports` are modules of message classes, and `own_import` is the statement that imports those of frozen
+    ones. `values` and `strategies` are those of hypothesis, as (name, strategy).
     """
 
     title: str
     module: str
     imports: tuple[str, ...]
-    frozen: tuple[str, ...]
+    own_import: str
     values: tuple[tuple[str, str], ...]
     strategies: tuple[tuple[str, str], ...]
     checks: tuple[CheckText, ...]
