@@ -10,31 +10,39 @@ import copyreg
 import sys
 from collections import deque
 from dataclasses import dataclass
-from functools import cache
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import TYPE_CHECKING, Any, Never, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ifgen_runtime.codec import deserialize, serialize
+from ifgen_runtime.undecided import Undecided, UndecidedError, lost, undecided
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from ifgen_runtime.codec import Buffer
 
+__all__ = [
+    "Adapter",
+    "AdapterError",
+    "Undecided",
+    "UndecidedError",
+    "adapter_for",
+    "decode",
+    "import_all",
+    "lost",
+    "pickled_from",
+    "register",
+    "short",
+    "unchanged",
+    "undecided",
+]
+
 MessageT = TypeVar("MessageT")
 
 
 class AdapterError(LookupError):
     """There is no adapter, or one was written for another version than the program has."""
-
-
-class UndecidedError(NotImplementedError):
-    """A message cannot be converted before a person has decided how: the file, the line and the field."""
-
-
-class Undecided:
-    """The type of what is left to decide. No field takes it, so type checkers report each place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +82,11 @@ def _outdated(adapter: Adapter, found: str) -> str:
 
 
 _registered: dict[tuple[str, type[Any]], Adapter] = {}
-_found: dict[tuple[str, type[Any]], Adapter | None] = {}
+_found: dict[tuple[str, type[Any]], Adapter] = {}
 """The results of `adapter_for` since an adapter was registered, chains included."""
+
+_compiled: dict[type[Any], str] = {}
+"""The type hashes of classes that do not know them."""
 
 
 def register(adapter: Adapter) -> None:
@@ -93,11 +104,10 @@ def adapter_for(type_hash: str, cls: type[Any]) -> Adapter | None:
     and from B to `cls`.
     """
     key = type_hash, cls
-    try:
-        return _found[key]
-    except KeyError:
-        found = _found[key] = _registered.get(key) or _chain(type_hash, cls)
-        return found
+    found = _found.get(key)
+    if found is None and (found := _registered.get(key) or _chain(type_hash, cls)) is not None:
+        _found[key] = found
+    return found
 
 
 def decode(data: Buffer, type_hash: str, cls: type[MessageT]) -> MessageT:
@@ -115,23 +125,6 @@ def decode(data: Buffer, type_hash: str, cls: type[MessageT]) -> MessageT:
         )
     upgraded: MessageT = adapter.upgrade(deserialize(data, adapter.old))
     return upgraded
-
-
-def undecided(question: str) -> Undecided:
-    """Stand for a value that a person has to decide on; the question names the field."""
-    raise _left_open(question)
-
-
-def lost(value: Never, question: str) -> None:
-    """Stand for the decision what becomes of a value that the other version has no field for."""
-    raise _left_open(question)
-
-
-def _left_open(question: str) -> UndecidedError:
-    import inspect  # takes longer to import than all adapters
-
-    frame = inspect.stack(0)[2]
-    return UndecidedError(f"{frame.filename}:{frame.lineno}: {question}")
 
 
 def import_all(package: str) -> None:
@@ -167,12 +160,13 @@ def _hash_of(cls: type[Any]) -> str:
     return _hash_of_compiled(cls) if found is None else found
 
 
-@cache
 def _hash_of_compiled(cls: type[Any]) -> str:
     """The type hash of a class of rosidl's, which does not know it."""
-    from ifgen_runtime.type_description import type_hash  # most programs have no such class here
+    if cls not in _compiled:
+        from ifgen_runtime.type_description import type_hash  # most programs have no such class here
 
-    return type_hash(cls)
+        _compiled[cls] = type_hash(cls)
+    return _compiled[cls]
 
 
 def _chain(type_hash: str, cls: type[Any]) -> Adapter | None:
