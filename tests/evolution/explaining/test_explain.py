@@ -239,16 +239,23 @@ def test_a_part_that_ros_derives_is_nothing_to_adapt(project: Path) -> None:
     assert text.endswith("help: use the same definition in both nodes")
 
 
-@pytest.mark.parametrize(
-    ("policy", "said"),
-    [
-        ("adapt", "on_type_mismatch is adapt: an adapter converts messages between the two"),
-        ("refuse", "on_type_mismatch is refuse: no messages pass between the two"),
-    ],
-)
-def test_a_publisher_says_what_its_policy_does(policy: str, said: str, project: Path) -> None:
-    text = explain(asdict(met(made(OLD), made(NEW), policy=policy, roles=("subscription", "publisher"))))
-    assert said in text
+def test_where_an_adapter_converts_nothing_is_left_to_do(project: Path) -> None:
+    text = explain(asdict(met(made(OLD), made(NEW), policy="adapt")))
+    assert text.endswith(
+        "\non_type_mismatch is adapt: an adapter converts messages between the two\n"
+        "help: use the same definition in both nodes"
+    )
+
+
+@pytest.mark.parametrize("policy", ["warn", "refuse", "adapt"])
+def test_on_a_topic_the_node_that_receives_decides_and_converts(policy: str, project: Path) -> None:
+    mismatch = met(made(NEW), made(OLD), policy=policy, roles=("subscription", "publisher"))
+    assert explain(asdict(mismatch)).endswith(
+        "\nwhat becomes of the messages is for /driver to decide, by its on_type_mismatch\n"
+        "help: use the same definition in both nodes. Until then, /driver can convert:\n"
+        "      ifgen adapt robot_msgs/msg/BatteryState --from RIHS01_3c76ee04b5060378\n"
+        "      and set its on_type_mismatch to adapt"
+    )
 
 
 def test_a_part_of_a_service_that_nobody_can_send_says_why(project: Path) -> None:

@@ -40,10 +40,14 @@ def _text(explanation: Explanation) -> str:
 
 
 def _help(explanation: Explanation) -> str:
+    lead = "help: "
+    advice = "use the same definition in both nodes"
     if explanation.command is None:
-        return "help: use the same definition in both nodes"
-    return (
-        "help: use the same definition in both nodes. Until then, an adapter can convert:\n"
-        f"      {report.printable(explanation.command)}\n"
-        "      and set on_type_mismatch to adapt"
+        return lead + advice
+    who, whose = ("an adapter", "") if explanation.converts is None else (explanation.converts, "its ")
+    lines = (
+        report.wrapped(f"{advice}. Until then, {who} can convert:", _WIDTH, len(lead)),
+        report.printable(explanation.command),
+        f"and set {whose}on_type_mismatch to adapt",
     )
+    return lead + f"\n{' ' * len(lead)}".join(lines)

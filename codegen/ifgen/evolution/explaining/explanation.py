@@ -26,7 +26,8 @@ class Explanation:
     """The parts of a warning: who, what differs, and what to do.
 
     `changes` are the differences from the other definition to ours, `left_out` how many more there are.
-    `command` is what writes an adapter, if there can be one.
+    `command` is what writes an adapter, if there can be one, and `converts` the node that is to use it: None
+    for ours.
     """
 
     head: str
@@ -34,6 +35,7 @@ class Explanation:
     left_out: int
     remarks: tuple[str, ...]
     command: str | None
+    converts: str | None = None
 
 
 def explained(mismatch: Mapping[str, Any]) -> Explanation:
@@ -60,9 +62,17 @@ def explained(mismatch: Mapping[str, Any]) -> Explanation:
     keeps_bytes = bool(found.changes) and all(Category.WIRE not in change.breaks for change in found.changes)
     remarks.append(_what_happens(mismatch, keeps_bytes=keeps_bytes))
     shown, left_out = found.changes[:_SHOWN], len(found.changes[_SHOWN:])
-    is_adapted = mismatch["policy"] == "adapt"
-    command = None if is_adapted else adapt_command(mismatch["kind"], type_name, theirs["type_hash"])
-    return Explanation(head(mismatch), shown, left_out, tuple(remarks), command)
+    # On a topic, whoever receives has the adapter, and it is from the version of the publisher.
+    publishes = mine["role"] == "publisher"
+    command = adapt_command(mismatch["kind"], type_name, (mine if publishes else theirs)["type_hash"])
+    return Explanation(
+        head(mismatch),
+        shown,
+        left_out,
+        tuple(remarks),
+        None if mismatch["policy"] == "adapt" and not publishes else command,
+        theirs["node"] if publishes else None,
+    )
 
 
 def head(mismatch: Mapping[str, Any]) -> str:
@@ -98,6 +108,8 @@ def _unknown(side: Mapping[str, Any], type_name: str) -> str:
 def _what_happens(mismatch: Mapping[str, Any], *, keeps_bytes: bool) -> str:
     """The sentence that says what is done with messages."""
     mine, theirs = mismatch["mine"]["node"], mismatch["theirs"]["node"]
+    if mismatch["mine"]["role"] == "publisher":
+        return f"what becomes of the messages is for {theirs} to decide, by its on_type_mismatch"
     what = "messages" if mismatch["kind"] == "topic" else "requests and responses"
     match mismatch["policy"]:
         case "adapt":
