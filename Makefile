@@ -77,7 +77,7 @@ $(VENV)/.run: pyproject.toml $(wildcard codegen/*/pyproject.toml) .ci/make_venv.
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run $(VENV)/.native
-	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim]' --group dev --group $(REFERENCE)
+	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[net,sim]' --group dev --group $(REFERENCE)
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.

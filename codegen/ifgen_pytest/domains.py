@@ -12,6 +12,9 @@ from pathlib import Path
 DOMAINS = 101
 """DDS has ports for the domains 0 to 101 on every system; 0 is everybody's."""
 
+RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+"""The environment variable that says how far a context looks for others."""
+
 _FIRST_PORT, _PORTS = 7400, 250  # of the domain 0; of each domain (DDSI-RTPS 2.5, section 9.6.2)
 _SHARED_MEMORY = Path("/dev/shm")  # where Fast DDS keeps a file for each port
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from ifgen_pytest.collector import CollectorFactory, NodeFactory
-from ifgen_pytest.domains import own_domain, private_domain
+from ifgen_pytest.domains import RANGE, own_domain, private_domain
 
 if TYPE_CHECKING:
     from rclpy.context import Context
@@ -31,9 +31,11 @@ def ros_context(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch)
     import rclpy
     from rclpy.signals import SignalHandlerOptions
 
-    if "ROS_AUTOMATIC_DISCOVERY_RANGE" not in os.environ:
-        monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     real = find_spec("rmw_local") is None
+    if not real:
+        monkeypatch.setenv(RANGE, "OFF")  # a private domain is private only within this process
+    elif RANGE not in os.environ:
+        monkeypatch.setenv(RANGE, "LOCALHOST")
     with own_domain() if real else nullcontext(private_domain()) as domain:
         # No signal handlers: Ctrl-C is pytest's.
         rclpy.init(args=[], domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)

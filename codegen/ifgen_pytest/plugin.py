@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Generator
 from typing import Any
 
@@ -9,6 +10,7 @@ import pytest
 
 from ifgen_pytest import transport
 from ifgen_pytest.comparison import explain
+from ifgen_pytest.domains import RANGE
 from ifgen_pytest.fixtures import ros_collect, ros_context, ros_executor, ros_node, ros_virtual_clock
 from ifgen_pytest.hints import hint
 from ifgen_pytest.strict import StrictCheck
@@ -38,6 +40,8 @@ def pytest_load_initial_conftests(
         # This process runs no test for `both`, but pytest imports its conftests.
         chosen = transport.activate("auto" if wanted == "both" else wanted, args)
         early_config.stash[_TRANSPORT] = wanted if wanted == "both" else chosen
+        if chosen == "local" and wanted != "both":
+            os.environ.setdefault(RANGE, "OFF")  # tests hear nobody outside, unless they are told to
     try:
         yield
     except Exception as error:

@@ -28,6 +28,7 @@ FILES = sorted((HERE / "graph").glob("test_*.py"))
 
 def run_inside(file: Path, folder: Path, *, slow: bool, limit: float) -> None:
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST_", "ROS_"))}
+    environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
     environment |= {
         "IFGEN_INSIDE_GRAPH": "1",
         "ROS_LOG_DIR": str(folder),  # not among the user's

@@ -34,6 +34,7 @@ def test_file(file: Path, codec: str, tmp_path: Path) -> None:
     }
     for name in [name for name in environment if name.startswith(("PYTEST_", "ROS_", "RCUTILS_"))]:
         del environment[name]
+    environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "OFF"
     environment["ROS_LOG_DIR"] = str(tmp_path)  # not among the user's
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "--timeout=60", str(file)]
     run = subprocess.run(

@@ -129,7 +129,16 @@ def examine() -> Iterator[Finding]:
     yield Finding("lark", str(import_module("lark").__version__))
     yield _codec()
     yield Finding("local transport", "works anywhere: ifgen run --transport local PROGRAM")
+    yield _other_processes()
     yield from _real_rclpy(system)
+
+
+def _other_processes() -> Finding:
+    """Whether the local transport leaves its process."""
+    number = _version("eclipse-zenoh")
+    if number is None:
+        return Finding("other processes", "not reached: Zenoh is missing", installing.add_extra("net"))
+    return Finding("other processes", f"reached over Zenoh {number}")
 
 
 def _runtime() -> Finding:

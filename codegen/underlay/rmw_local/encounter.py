@@ -5,7 +5,7 @@ Endpoints whose definitions are the same meet none of this.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from rmw_local.origin import Origin
 from rmw_local.passage import Downgrading, Marking
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceServer
     from rmw_local.writer import Writer
 
-    Party = Reader | Writer | ServiceEndpoint
+    Party: TypeAlias = Reader | Writer | ServiceEndpoint
     Ends = tuple[Any, Any]  # for each of two endpoints itself, or what stands for it
 
 _WARN, _REFUSE, _ADAPT = "warn", "refuse", "adapt"
@@ -27,7 +27,8 @@ _WARN, _REFUSE, _ADAPT = "warn", "refuse", "adapt"
 class Encounter(NamedTuple):
     """A pair of endpoints. `mine` is the one whose node's policy was applied: on a topic, the reader.
 
-    `wanted` is that policy, and `policy` what came of it: a node that has no adapter refuses.
+    `wanted` is that policy, and `policy` what came of it: a node that has no adapter refuses. Endpoints in
+    two processes always refuse each other, because the type hash is part of what a message is addressed to.
     """
 
     mine: Party
@@ -35,12 +36,24 @@ class Encounter(NamedTuple):
     wanted: str
     policy: str
 
+    @property
+    def crosses_processes(self) -> bool:
+        """Whether one of the two is in another process."""
+        return self.mine.is_remote or self.theirs.is_remote
+
+    @property
+    def withholds(self) -> bool:
+        """Whether mine is to get nothing from anybody else either."""
+        return not self.crosses_processes or (self.mine.role == "subscription" and self.wanted != _WARN)
+
 
 def meet_on_topic(writer: Writer, reader: Reader) -> tuple[Encounter, Origin | None]:
     """Decide about a writer and a reader; return where messages come from, None if the reader refuses.
 
     Called with the domain's lock held, as is `meet_on_service`.
     """
+    if reader.is_remote or writer.is_remote:
+        return _across_processes(reader, writer), None
     wanted = policy = _policy(reader, writer)
     adapter = None
     if wanted == _ADAPT:
@@ -55,6 +68,8 @@ def meet_on_service(client: ServiceClient, server: ServiceServer) -> tuple[Encou
 
     Whoever refuses decides. Else whoever adapts does, the server first.
     """
+    if client.is_remote or server.is_remote:
+        return _across_processes(server, client), None
     sides: list[tuple[ServiceEndpoint, ServiceEndpoint]] = [(server, client), (client, server)]
     for mine, theirs in sides:
         if _policy(mine, theirs) == _REFUSE:
@@ -73,6 +88,11 @@ def meet_on_service(client: ServiceClient, server: ServiceServer) -> tuple[Encou
 def _policy(mine: Party, theirs: Party) -> str:
     """The policy of a node; only to warn of a class without a type hash, whose definition nobody knows."""
     return mine.node.on_type_mismatch if mine.kind.type_hash and theirs.kind.type_hash else _WARN
+
+
+def _across_processes(one: Party, other: Party) -> Encounter:
+    mine, theirs = (other, one) if one.is_remote else (one, other)
+    return Encounter(mine, theirs, _policy(mine, theirs), _REFUSE)
 
 
 def _adapted(mine: ServiceEndpoint, theirs: ServiceEndpoint) -> Ends | None:

@@ -17,6 +17,8 @@ class Endpoint:
     """One end of a topic. Its QoS profile is resolved: no policy is "system default" any more."""
 
     role: ClassVar[str]
+    is_remote: ClassVar[bool] = False
+    """Whether it stands for an endpoint in another process."""
     encounters: tuple[Encounter, ...] = ()  # with other definitions, until they are told of
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:

@@ -12,9 +12,9 @@ import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
-from rmw_local import observer
+from rmw_local import observer, timing
 from rmw_local.allocator import keep_freed_memory
 from rmw_local.qos import INFINITE, TRANSIENT_LOCAL, resolve_offered, resolve_requested
 from rmw_local.reader import LifespanReader, Reader
@@ -28,6 +28,15 @@ if TYPE_CHECKING:
 
     from rmw_local.message import MessageType, ServiceType
     from rmw_local.qos import QosProfile
+    from rmw_local.transports.link import Link
+    from rmw_local.transports.reach import Reach
+
+Entity: TypeAlias = "GraphNode | Writer | Reader | ServiceEndpoint"
+
+
+def range_is_off() -> bool:
+    """Whether ROS_AUTOMATIC_DISCOVERY_RANGE says that nobody is to be found."""
+    return os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE") == "OFF"
 
 
 class TypeConflictError(Exception):
@@ -56,6 +65,8 @@ class Domain:
         self.topics: dict[str, Topic] = {}
         self.services: dict[str, ServiceName] = {}
         self.changed = GraphSource()
+        self.reach: Reach | None = None  # the way to other processes, once there is a node
+        self.link: Link | None = None  # while there are other processes
         self._forsaken: deque[Callable[[], None]] = deque()
 
     @classmethod
@@ -76,6 +87,17 @@ class Domain:
             except IndexError:  # another thread was faster
                 return
             close()
+
+    def reach_out(self) -> None:
+        """Look for other processes, and let them find this one."""
+        if self.reach is None:
+            from rmw_local.transports.reach import Reach  # late: not where everything stays in the process
+
+            with self._creation:
+                begins = self.reach is None
+                self.reach = self.reach or Reach(self)
+            if begins:
+                self.reach.begin()
 
     def topic(self, name: str) -> Topic:
         """Return the topic, a new one if it has no endpoint yet. Called with the lock held."""
@@ -100,6 +122,8 @@ class Participant:
     def __init__(self, domain_id: int) -> None:
         keep_freed_memory()
         self.domain = Domain.numbered(domain_id)
+        self.keeps_to_itself = range_is_off() or not isinstance(timing.driver, timing.SystemDriver)
+        """Whether nobody outside this process is to see it. A virtual clock is nobody else's."""
         # 16-byte gids as DDS makes them: vendor, process, participant, entity
         process = os.getpid() & 0xFFFFFFFF
         self._prefix = b"\x01\x0f" + process.to_bytes(4, "big") + next(self._prefixes).to_bytes(6, "big")
@@ -136,10 +160,11 @@ class Participant:
     def create_node(self, name: str, namespace: str, enclave: str = "/") -> GraphNode:
         """Announce a node; several may have one name."""
         node = GraphNode(self, name, namespace, enclave)
+        if not self.keeps_to_itself:
+            self.domain.reach_out()
         with self.domain.lock:
             self.domain.nodes.append(node)
-        _record_opened(node)
-        self.domain.changed.notify()
+        node.announce(node, [])
         return node
 
     def claim(self, topic: str, type_name: str) -> None:
@@ -160,6 +185,9 @@ class Participant:
 
 class GraphNode:
     """A node as others see it; it makes the endpoints."""
+
+    is_remote: ClassVar[bool] = False
+    """Whether it stands for a node in another process."""
 
     def __init__(self, participant: Participant, name: str, namespace: str, enclave: str) -> None:
         self.participant = participant
@@ -185,7 +213,7 @@ class GraphNode:
             make = DurableWriter if resolved.durability == TRANSIENT_LOCAL else Writer
             writer = make(self, message_type, topic, resolved)
             changed = place.add_writer(writer)
-        self._announce(writer, changed)
+        self.announce(writer, changed)
         self._tell_of_encounters(writer)
         return writer
 
@@ -200,7 +228,7 @@ class GraphNode:
             make = LifespanReader if resolved.lifespan < INFINITE else Reader
             reader = make(self, message_type, topic, resolved)
             changed = place.add_reader(reader)
-        self._announce(reader, changed)
+        self.announce(reader, changed)
         self._tell_of_encounters(reader)
         return reader
 
@@ -269,7 +297,7 @@ class GraphNode:
         with domain.lock:
             self.participant.claim(request_topic(endpoint.name), endpoint.service_type.name)
             domain.service(endpoint.name).add(endpoint)
-        self._announce(endpoint, [])
+        self.announce(endpoint, [])
         self._tell_of_encounters(endpoint)
 
     def _leave_topic(self, name: str) -> None:
@@ -278,9 +306,13 @@ class GraphNode:
         if topics[name].is_empty():
             del topics[name]
 
-    def _announce(self, entity: object, changed: Iterable[ReadySource]) -> None:
+    def announce(self, entity: Entity, changed: Iterable[ReadySource]) -> None:
+        """Tell everybody that an entity of this node has joined, with no lock held."""
         _record_opened(entity)
         self._notify(changed)
+        link = self.participant.domain.link
+        if link is not None:
+            link.announce(entity)
 
     def _tell_of_encounters(self, newcomer: Writer | Reader | ServiceEndpoint) -> None:
         if not newcomer.encounters:
@@ -290,7 +322,10 @@ class GraphNode:
         encounters, newcomer.encounters = newcomer.encounters, ()
         tell_of(encounters)
 
-    def _renounce(self, entity: object, changed: Iterable[ReadySource]) -> None:
+    def _renounce(self, entity: Entity, changed: Iterable[ReadySource]) -> None:
+        link = self.participant.domain.link
+        if link is not None:
+            link.withdraw(entity)
         watching = observer.current()
         if watching is not None:
             watching.closed(entity)

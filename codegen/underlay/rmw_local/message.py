@@ -76,6 +76,10 @@ class MessageType:
         return (int(prefix.removeprefix("RIHS")), bytes.fromhex(digits)) if digits else (0, bytes(32))
 
 
+class Elsewhere:
+    """Stands for the class of an endpoint in another process: only its name and its type hash are known."""
+
+
 class ServiceType:
     """One service class."""
 

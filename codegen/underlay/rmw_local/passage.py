@@ -14,6 +14,7 @@ class Marking:
     """Stands for a reader, a client or a server, and marks what it gets with its origin."""
 
     __slots__ = ("_origin", "end")
+    is_remote = False
 
     def __init__(self, end: Any, origin: Origin) -> None:
         self.end = end
@@ -36,6 +37,7 @@ class Downgrading:
     """Stands for a client or a server of another version, and converts to that before anything is sent."""
 
     __slots__ = ("_kind", "_node", "_origin", "end")
+    is_remote = False
 
     def __init__(self, end: Any, origin: Origin, kind: MessageType, node: GraphNode) -> None:
         """`kind` is what `node` sends to the end, which is the peer of `origin`."""

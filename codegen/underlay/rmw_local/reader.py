@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from rmw_local.origin import Origin
     from rmw_local.qos import QosProfile
 
-# One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages).
-# All readers share it. Bytes rather than objects: an unread message is never decoded, and every reader gets
-# its own object when it takes the message. Bytes that may be of another definition have an
-# Origin as well. A reader that is alone may get a parcel in place of the bytes (`MessageType.pack`).
-Sample = tuple[Any, int, int] | tuple[bytes, int, int, "Origin"]
+# One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages,
+# stamp of its arrival [ns, system time]). All readers share it. Bytes rather than objects: an unread message
+# is never decoded, and every reader gets its own object when it takes the message. Bytes that may be of
+# another definition have an Origin as well. A reader that is alone may get a parcel in place of the bytes
+# (`MessageType.pack`).
+Sample = tuple[Any, int, int, int] | tuple[bytes, int, int, int, "Origin"]
 
 
 class _Closed(deque[Sample]):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -40,6 +41,8 @@ class ServiceEndpoint(ReadySource):
     """A client or a server with the queue of what it has yet to take."""
 
     role: ClassVar[str]
+    is_remote: ClassVar[bool] = False
+    """Whether it stands for one in another process."""
     encounters: tuple[Encounter, ...] = ()  # with other definitions, until they are told of
     sends: MessageType
     takes: MessageType
@@ -111,6 +114,7 @@ class ServiceClient(ServiceEndpoint):
         super().__init__(node, service_type, name, qos)
         self.sends, self.takes = service_type.request, service_type.response
         self.servers: tuple[Any, ...] = ()  # servers, or what stands for them (`rmw_local.passage`)
+        self.beyond: Callable[[Letter], object] | None = None  # takes requests to other processes
         self._numbers = itertools.count(1)
 
     def send(self, request: Any) -> int:
@@ -119,8 +123,14 @@ class ServiceClient(ServiceEndpoint):
         number = next(self._numbers)
         letter = (data, timing.time_ns(), self.gid, number)
         servers = self.servers
+        far = False
         for server in servers:
-            server.accept(letter)
+            if server.is_remote:
+                far = True
+            else:
+                server.accept(letter)
+        if far and self.beyond is not None:
+            self.beyond(letter)  # once, for all of them
         if self._observer is not None and not servers:
             self._observer.undelivered(self.name, 1, "requested while no service was matched")
         return number
@@ -135,13 +145,18 @@ class ServiceServer(ServiceEndpoint):
         super().__init__(node, service_type, name, qos)
         self.sends, self.takes = service_type.response, service_type.request
         self.clients: dict[bytes, Any] = {}  # clients, or what stands for them; replaced, never changed
+        # Takes responses to other processes; False if the client is not there either.
+        self.beyond: Callable[[Letter], bool] | None = None
 
     def respond(self, client_gid: bytes, number: int, response: Any) -> None:
         """Send a response. If the client is gone, it is dropped."""
         data = _serialized(self.sends, response)
         client = self.clients.get(client_gid)
-        if client is not None:
-            client.accept((data, timing.time_ns(), client_gid, number))
+        letter = (data, timing.time_ns(), client_gid, number)
+        if client is not None and not client.is_remote:
+            client.accept(letter)
+        elif self.beyond is not None and self.beyond(letter):
+            return
         elif self._observer is not None:
             self._observer.undelivered(self.name, 1, "answered when the client was gone")
 
@@ -190,6 +205,8 @@ def _serialized(kind: MessageType, message: Any) -> bytes:
 
 
 def _introduce(client: ServiceClient, server: ServiceServer, newcomer: ServiceEndpoint) -> None:
+    if client.is_remote and server.is_remote:
+        return  # they meet where they are
     if client.service_type.name != server.service_type.name:
         return
     if mismatch(client.qos.writer, server.qos.reader) or mismatch(server.qos.writer, client.qos.reader):

@@ -41,7 +41,9 @@ def _tell(mismatch: Mismatch, encounter: Encounter) -> None:
         text = f"{mismatch.kind} '{mismatch.name}': more endpoints differ, which is not said any more"
     else:
         text = explanation(mismatch)
-        if encounter.wanted != encounter.policy:
+        if encounter.crosses_processes:
+            text += "\nBetween processes only equal definitions meet, so nothing is exchanged."
+        elif encounter.wanted != encounter.policy:
             text += _missing(mismatch, text)
     report.say(node, text, is_warning=mismatch.policy != "adapt")
 
@@ -87,6 +89,8 @@ class _Subject:
         role = party.role
         if self._kind == "action":
             role = "action server" if role in ("publisher", "service server") else "action client"
+        if party.is_remote:
+            return Side(party.node.full_name, role, party.kind.type_hash)
         try:
             definition = definition_of(cls)
         except Exception:  # whoever made the class, it must not keep a node from being made

@@ -48,8 +48,8 @@ class Topic:
         """Let a writer leave."""
         self.writers.remove(writer)
         changed: list[ReadySource] = []
-        for receiver in writer.readers:
-            changed += self._part(writer, receiver.end, stays=receiver.end)
+        for reader in writer.matches:
+            changed += self._part(writer, reader, stays=reader)
         if self._refused:
             changed += self._readmit(writer)
         return changed
@@ -70,6 +70,8 @@ class Topic:
         return not self.writers and not self.readers
 
     def _introduce(self, writer: Writer, reader: Reader, *, newcomer: Endpoint) -> list[ReadySource]:
+        if writer.is_remote and reader.is_remote:
+            return []  # they meet where they are
         if writer.message_type.name != reader.message_type.name:
             return []  # DDS keeps topics of different types apart without a word
         if writer.qos.avoid_ros_namespace_conventions != reader.qos.avoid_ros_namespace_conventions:
@@ -84,16 +86,17 @@ class Topic:
             encounter, origin = meet_on_topic(writer, reader)
             newcomer.encounters = (*newcomer.encounters, encounter)
             if origin is None:
-                return self._refuse(writer, reader)
+                return self._refuse(writer, reader, withholds=encounter.withholds)
         writer.connect(reader, origin)
         writer.matched.joined()
         reader.matched.joined()
         return [writer.matched, reader.matched, reader.liveliness_changed]
 
-    def _refuse(self, writer: Writer, reader: Reader) -> list[ReadySource]:
-        """Keep a reader from everything on this topic, until the writer leaves."""
-        self._refused.append((writer, reader))
-        reader.withhold()
+    def _refuse(self, writer: Writer, reader: Reader, *, withholds: bool) -> list[ReadySource]:
+        """Part two endpoints; if it `withholds`, keep the reader from everything until the writer leaves."""
+        if withholds:
+            self._refused.append((writer, reader))
+            reader.withhold()
         writer.incompatible_type.add()
         reader.incompatible_type.add()
         return [writer.incompatible_type, reader.incompatible_type]

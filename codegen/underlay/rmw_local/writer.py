@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
@@ -25,6 +25,22 @@ if TYPE_CHECKING:
     from rmw_local.reader import Reader, Sample
 
 
+class Outlet(Protocol):
+    """All readers of one writer that are in other processes: they get what it publishes, sent once."""
+
+    def accept(self, sample: Sample) -> None:
+        """Send a message."""
+
+    def store(self, sample: Sample) -> None:
+        """Send a message, as far as the writer's lock is concerned."""
+
+    def announce(self) -> None:
+        """Follow a `store`, when the caller holds no lock any more."""
+
+    def assert_alive(self) -> None:
+        """Say that the writer is alive."""
+
+
 class Writer(Endpoint):
     """A volatile writer: it keeps nothing, so publishing needs no lock.
 
@@ -37,7 +53,9 @@ class Writer(Endpoint):
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         super().__init__(node, message_type, topic, qos)
-        self.readers: tuple[Reader | Marking, ...] = ()
+        self.readers: tuple[Reader | Marking | Outlet, ...] = ()  # what messages are delivered to
+        self.matches: tuple[Reader, ...] = ()  # those in other processes too, which share the outlet
+        self.outlet: Outlet | None = None  # the way to other processes, while there are any
         self._marking: dict[Reader, Marking] = {}  # the stand-ins; replaced, never changed
         self._own_origin: Origin | None = None  # once it publishes bytes
         self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
@@ -47,7 +65,8 @@ class Writer(Endpoint):
         self._timed = self.deadline is not None or self._manual
         self._numbers = itertools.count(1)
         # How to serialise for these readers: one thing, so that no other reader gets what was made for one.
-        self._route: tuple[Callable[[Any], Any], tuple[Reader | Marking, ...]] = (message_type.serialize, ())
+        self._route: tuple[Callable[[Any], Any], tuple[Reader | Marking | Outlet, ...]]
+        self._route = (message_type.serialize, ())
         self._observer = observer.current()
 
     def publish(self, message: Any) -> None:
@@ -63,10 +82,11 @@ class Writer(Endpoint):
         """Deliver a serialised message of the writer's class."""
         self._deliver(data, self.readers)
 
-    def _deliver(self, data: Any, readers: tuple[Reader | Marking, ...]) -> None:
+    def _deliver(self, data: Any, readers: tuple[Reader | Marking | Outlet, ...]) -> None:
         if self._timed:
             self._note_publication()
-        sample = (data, timing.time_ns(), next(self._numbers))
+        now = timing.time_ns()
+        sample = (data, now, next(self._numbers), now)
         for reader in readers:
             reader.accept(sample)
         if self._observer is not None and not readers:
@@ -81,8 +101,14 @@ class Writer(Endpoint):
     def assert_liveliness(self) -> None:
         """Say that the writer lives, for one more lease."""
         if self._manual:
-            for lease in (self.liveliness_lost.lease, *self._leases.values()):
-                lease.sign()
+            self.sign_leases()
+            if self.outlet is not None:
+                self.outlet.assert_alive()
+
+    def sign_leases(self) -> None:
+        """Note a sign of life."""
+        for lease in (self.liveliness_lost.lease, *self._leases.values()):
+            lease.sign()
 
     def connect(self, reader: Reader, origin: Origin | None = None) -> None:
         """Deliver to one more reader, marked with an origin. Called with the domain's lock held."""
@@ -91,30 +117,34 @@ class Writer(Endpoint):
             lease = Lease(reader.liveliness_changed, patience, manual=self._manual)
             reader.liveliness_changed.watch(lease)
             self._leases = {**self._leases, reader: lease}
-        self.readers = (*self.readers, self._receiver(reader, origin))
+        if not reader.is_remote:
+            self._receiver(reader, origin)
+        self.matches = (*self.matches, reader)
         self.settle_route()
 
-    def _receiver(self, reader: Reader, origin: Origin | None) -> Reader | Marking:
+    def attach(self, outlet: Outlet | None) -> None:
+        """Deliver to other processes by this outlet from now on. Called with the domain's lock held."""
+        self.outlet = outlet
+        self.settle_route()
+
+    def _receiver(self, reader: Reader, origin: Origin | None = None) -> Reader | Marking:
         """The reader, or what stands for it."""
-        origin = origin or self._own_origin
-        if origin is None:
-            return reader
         known = self._marking.get(reader)
-        if known is None:
+        origin = origin or self._own_origin
+        if known is None and origin is not None:
             known = Marking(reader, origin)
             self._marking = {**self._marking, reader: known}
-        return known
+        return known or reader
 
     def reaches(self, reader: Reader) -> bool:
-        """Whether it delivers to a reader. Called with the domain's lock held."""
-        return self._marking.get(reader, reader) in self.readers
+        """Whether it delivers to a reader."""
+        return reader in self.matches
 
     def disconnect(self, reader: Reader) -> None:
         """Deliver to a reader no longer. Called with the domain's lock held."""
-        receiver = self._marking.get(reader, reader)
-        self.readers = tuple(known for known in self.readers if known is not receiver)
+        self.matches = tuple(known for known in self.matches if known is not reader)
         self.settle_route()
-        if receiver is not reader:
+        if reader in self._marking:
             self._marking = {each: known for each, known in self._marking.items() if each is not reader}
         lease = self._leases.get(reader)
         if lease is not None:
@@ -124,13 +154,18 @@ class Writer(Endpoint):
 
     def settle_route(self) -> None:
         """Choose how to serialise for the readers that there are now. Called with the domain's lock held."""
-        readers, kind = self.readers, self.message_type
+        near = tuple(self._receiver(reader) for reader in self.matches if not reader.is_remote)
+        kind = self.message_type
         serialize = kind.serialize
-        if len(readers) == 1 and not self._keeps:
-            (reader,) = readers
-            if not isinstance(reader, Marking) and reader.takes_parcels and reader.message_type is kind:
-                serialize = kind.pack
-        self._route = serialize, readers
+        if self.outlet is not None and (self._keeps or len(near) < len(self.matches)):
+            self.readers = (*near, self.outlet)
+        else:
+            self.readers = near
+            if len(near) == 1 and not self._keeps:
+                (reader,) = near
+                if not isinstance(reader, Marking) and reader.takes_parcels and reader.message_type is kind:
+                    serialize = kind.pack
+        self._route = serialize, self.readers
 
     def _doubt(self) -> None:
         """Mark all messages, to readers that there are and to those to come."""
@@ -139,7 +174,6 @@ class Writer(Endpoint):
         with self.node.participant.domain.lock:
             if self._own_origin is None:
                 self._own_origin = Origin("topic", self.topic, self.node, is_raw=True)
-                self.readers = tuple(self._receiver(known.end, None) for known in self.readers)
                 self.settle_route()
 
     def _note_publication(self) -> None:
@@ -162,12 +196,13 @@ class DurableWriter(Writer):
         self._lock = threading.Lock()
         self._history: deque[Sample] = deque(maxlen=qos.queue_length)
 
-    def _deliver(self, data: Any, readers: tuple[Reader | Marking, ...]) -> None:
+    def _deliver(self, data: Any, readers: tuple[Reader | Marking | Outlet, ...]) -> None:
         """Keep and deliver, to whoever is there once the lock is held."""
         if self._timed:
             self._note_publication()
         with self._lock:
-            sample = (data, timing.time_ns(), next(self._numbers))
+            now = timing.time_ns()
+            sample = (data, now, next(self._numbers), now)
             self._history.append(sample)
             readers = self.readers
             for reader in readers:
@@ -178,10 +213,19 @@ class DurableWriter(Writer):
     def connect(self, reader: Reader, origin: Origin | None = None) -> None:
         """Replay what is kept to a transient local reader, then deliver to it as well."""
         with self._lock:
-            if reader.qos.durability == self.qos.durability:
-                born_after = timing.time_ns() - self.qos.lifespan
-                receiver = self._receiver(reader, origin)
-                for sample in self._history:
-                    if sample[1] > born_after:
-                        receiver.store(sample)
+            if reader.qos.durability == self.qos.durability and not reader.is_remote:
+                self._replay(self._receiver(reader, origin))
             super().connect(reader, origin)
+
+    def attach(self, outlet: Outlet | None) -> None:
+        """Give the outlet what is kept: it replays that to transient local readers in other processes."""
+        with self._lock:
+            if outlet is not None:
+                self._replay(outlet)
+            super().attach(outlet)
+
+    def _replay(self, reader: Reader | Marking | Outlet) -> None:
+        born_after = timing.time_ns() - self.qos.lifespan
+        for sample in self._history:
+            if sample[1] > born_after:
+                reader.store(sample)

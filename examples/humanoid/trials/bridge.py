@@ -1,13 +1,15 @@
 """The simulator in a process of its own and the other nodes in this one, on the local transport, in lockstep.
 
-The local transport does not leave its process, so serialized messages go through a pipe here. Each message to
-the simulator waits for everything that the simulator publishes in response, like a call within one process.
+Messages between processes keep no order among topics. So serialized ones go through a pipe here, and the
+local transport stays within each process. Each message to the simulator waits for everything that the
+simulator publishes in response, like a call within one process.
 The order of events is therefore the same, and a run has the same state hash as in one process.
 """
 
 from __future__ import annotations
 
 import multiprocessing
+import os
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -26,6 +28,7 @@ from std_srvs.srv import Trigger
 
 from .graph import NodeGraph, make_simulator
 
+_RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 _LONGEST = 60.0  # s for an answer; a later one is an error, because time must not go on without it
 _ENDING = 5.0  # s that the simulator's process has to end
 _KEPT = ("/rosout", "/parameter_events", "/head_camera")  # each process has its own; images take long
@@ -128,6 +131,8 @@ class Attendant(Node):
 @contextmanager
 def split(**parameters: Any) -> Generator[NodeGraph]:
     """Make all nodes except the simulator, which has these parameters and runs in another process."""
+    before = os.environ.get(_RANGE)
+    os.environ[_RANGE] = "OFF"  # the pipe is the only way
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
     process = context.Process(target=_serve, args=(there, parameters), daemon=True)
@@ -140,6 +145,10 @@ def split(**parameters: Any) -> Generator[NodeGraph]:
         here.close()
         process.join(_ENDING)
         process.kill()
+        if before is None:
+            del os.environ[_RANGE]
+        else:
+            os.environ[_RANGE] = before
 
 
 def _serve(pipe: Connection, parameters: dict[str, Any]) -> None:

@@ -149,7 +149,7 @@ def test_bytes_that_are_left_over_are_said_once_and_counted(log: Callable[[], li
     log()
     for _ in range(3):
         publisher.publish(Longer(source="wheel", rest=[1]))
-    (_, _, _, origin), *_ = subscription.handle.reader._queue
+    (*_, origin), *_ = subscription.handle.reader._queue
     spin(receiver)
     (line,) = log()
     assert "topic '/speed': 7 bytes of a message of /sender are left over. The message was delivered." in line

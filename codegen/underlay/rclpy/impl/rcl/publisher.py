@@ -47,7 +47,7 @@ class Publisher(EndpointHandle):
     def get_subscription_count(self) -> int:
         """Count the matched subscriptions."""
         self._bury()
-        return len(self._writer.readers)
+        return len(self._writer.matches)
 
     def publish(self, pymsg: Any) -> None:
         """Deliver a message to every matched subscription."""

@@ -17,8 +17,9 @@ if TYPE_CHECKING:
     from rmw_local.origin import Origin
 
 MessageInfo = dict[str, int | None]
-# A message (or its bytes), its source stamp [ns, system time], its number among its publisher's messages.
-Taken = tuple[Any, int, int]
+# A message (or its bytes), its source stamp [ns, system time], its number among its publisher's messages, the
+# stamp of its arrival [ns, system time].
+Taken = tuple[Any, int, int, int]
 
 
 class Subscription(SourceHandle, EndpointHandle):
@@ -80,11 +81,11 @@ class Subscription(SourceHandle, EndpointHandle):
         if raw:
             return self._raw(sample)
         try:
-            data, stamp, number = sample
+            data, stamp, number, arrival = sample
         except ValueError:  # it is marked
             return self._take_with_care(*sample)
         try:
-            return self._deserialize(data), stamp, number
+            return self._deserialize(data), stamp, number, arrival
         except DecodeError:
             self._drops.add()
             return None
@@ -93,21 +94,23 @@ class Subscription(SourceHandle, EndpointHandle):
         """A message as bytes, as all that follow will be."""
         if self._reader.takes_parcels:
             self._reader.refuse_parcels()
-        data, stamp, number = sample[:3]
-        return bytes(data), stamp, number
+        data, stamp, number, arrival = sample[:4]
+        return bytes(data), stamp, number, arrival
 
-    def _take_with_care(self, data: bytes, stamp: int, number: int, origin: Origin) -> Taken | None:
+    def _take_with_care(
+        self, data: bytes, stamp: int, number: int, arrival: int, origin: Origin
+    ) -> Taken | None:
         """Read bytes that may be of another definition."""
         message = origin.read(data, self._kind, self._deserialize, self._reader.node)
-        return None if message is None else (message, stamp, number)
+        return None if message is None else (message, stamp, number, arrival)
 
 
 def message_info(taken: Taken) -> MessageInfo:
     """The metadata of a message."""
-    _, stamp, number = taken
+    _, stamp, number, arrival = taken
     return {
         "source_timestamp": stamp,
-        "received_timestamp": stamp,  # delivery happens inside publish
+        "received_timestamp": arrival,  # in one process, delivery happens inside publish
         "publication_sequence_number": number,
         "reception_sequence_number": None,
     }
