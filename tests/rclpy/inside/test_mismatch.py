@@ -256,7 +256,7 @@ def test_whatever_the_bytes_are_reading_them_ends_well() -> None:
         f"bool b\nstring s\nwstring<=3 w\nuint8[] d\nfloat64[<=3] f\nstring[] n\nPart[] p\nint16[3] a\n{part}",
     )
     kind, place, draw = message_type(cls), node("n").handle.graph_node, random.Random(1)
-    origin = Origin("topic", "/t", place)
+    origin, raw = Origin("topic", "/t", place), Origin("topic", "/t", place, is_raw=True)
     whole = serialize(
         cls(b=True, s="é", w="ab", d=[1, 2], f=[0.1], n=["", "c"], p=[cls.__nested__[0](y="y")], a=[1, 2, 3])
     )
@@ -271,6 +271,7 @@ def test_whatever_the_bytes_are_reading_them_ends_well() -> None:
             else data + draw.randbytes(draw.randint(0, 5))
         )
         message = origin.read(bytes(data), kind, kind.deserialize, place)
+        assert (raw.read(bytes(data), kind, kind.deserialize, place) is None) == (message is None)
         if message is not None:
             read += 1
             size = size_of(bytes(data), cls)
