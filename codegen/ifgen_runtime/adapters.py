@@ -77,7 +77,8 @@ def _outdated(adapter: Adapter, found: str) -> str:
     return (
         f"the adapter from {name} {short(_hash_of(adapter.old))} was written for {name} {written_for}, and "
         f"{name} is {short(found)} now: `ifgen adapt {package}/{folder}/{name} --from {written_for}` freezes "
-        f"that version{', and says how to import it here' if adapter.within else import_}"
+        f"that version{', and says how to import it here' if adapter.within else import_}. If the class is "
+        "not that of your interfaces, run `ifgen generate`"
     )
 
 

@@ -68,7 +68,7 @@ def _function(function: Function, names: ClassNames) -> FunctionText:
         names.runtime("undecided")
     return FunctionText(
         head=head,
-        docstring="Make today's message of an old one." if is_upgrade else "Make an old message of today's.",
+        docstring=f"Make a message of the {'new' if is_upgrade else 'old'} version.",
         result=target,
         lost=lost,
         values=tuple(_value(step) for step in function.steps),
