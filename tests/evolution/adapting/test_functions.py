@@ -200,6 +200,14 @@ def test_a_message_that_was_renamed_is_the_same(adapt: Adapt) -> None:
     assert module.upgrade(old(cells=[cell(voltage=0.5)])) == module.Pack(cells=[module.Part(voltage=0.5)])
 
 
+def test_names_of_fields_are_said_as_they_are_on_the_other_side(adapt: Adapt) -> None:
+    module = adapt(
+        {"msg/T.msg": "int8 a\nbool x\n"}, {"msg/T.msg": "int8 b\nint8 x\n"}, "msg/T", "--downgrade"
+    )
+    assert "        b=old.a,  # was `a`\n" in text(module)
+    assert "        a=new.b,  # now `b`\n" in text(module)
+
+
 def test_a_type_that_had_another_name(adapt: Adapt, tmp_path: Path, ifgen: Any) -> None:
     adapt({"msg/Old.msg": "int8 a\n", "msg/T.msg": "int8 a"}, {"msg/T.msg": "int16 a\n"}, "msg/T")
     done = ifgen("adapt", "robot_msgs/msg/T", "--from", "old:robot_msgs/msg/Old", "-o", "more")

@@ -71,18 +71,18 @@ def _function(function: Function, names: ClassNames) -> FunctionText:
         docstring=f"Make a message of the {'new' if is_upgrade else 'old'} version.",
         result=target,
         lost=lost,
-        values=tuple(_value(step) for step in function.steps),
+        values=tuple(_value(step, "was" if is_upgrade else "now") for step in function.steps),
     )
 
 
-def _value(step: Step) -> ValueText:
+def _value(step: Step, when: str) -> ValueText:
     name = attribute_name(step.target)
     if step.question:
         return ValueText(name, "", "", _text(step.question))
     if step.conversion is None:
         return ValueText(name, step.default, "only this version has it", "")
     assert step.source is not None
-    note = f"was `{step.source.name}`" if step.source.name != step.target.name else ""
+    note = f"{when} `{step.source.name}`" if step.source.name != step.target.name else ""
     return ValueText(name, step.conversion.text, note, "")
 
 
