@@ -94,6 +94,8 @@ def test_the_thread_that_watches(many: int) -> None:
         "/unmoved subscription warn True",
         "two contexts 2",
         "one context 1",
-        "many True watched nodes ['careful', 'peer', 'unmoved']",
+        "without a hash 1 [0.1]",
+        "adapted [2.0]",
+        "many True watched nodes ['adapted', 'careful', 'peer', 'unmoved']",
         "after 0 []",
     ]

@@ -6,12 +6,19 @@ import threading
 
 import ifgen.dynamic
 from common import rclpy, spin_until
+from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.mismatch import listeners
 from ifgen_runtime.mismatch.real_rclpy.watch import watch_of
+from ifgen_runtime.type_support import tables
+from rcl_interfaces.msg import Log
 from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+Nameless, Nameless_ = (
+    ifgen.dynamic.class_from_text("my_msgs/msg/Nameless", text)
+    for text in ("float64 a", "float64 a\nint32 old")
+)
 Ours, Theirs = (
     ifgen.dynamic.class_from_text("my_msgs/msg/Speed", text) for text in ("float64 a", "float64 a\nint32 b")
 )
@@ -28,6 +35,10 @@ class Careful(Node):
     on_type_mismatch = "refuse"
 
 
+class Adapted(Node):
+    on_type_mismatch = "adapt"
+
+
 rclpy.init()
 print("before", threads())
 careful = Careful("careful")
@@ -38,6 +49,7 @@ try:
     Node("wrong", parameter_overrides=wrong).create_subscription(Ours, "/one", received.append, 10)
 except ValueError as error:
     print(error)
+adapted = Adapted("adapted")
 unmoved = Careful("unmoved", parameter_overrides=[Parameter("on_type_mismatch", value="warn")])
 unmoved.create_subscription(Ours, "/one", lambda message: None, 10)
 print("running", threads())
@@ -63,6 +75,32 @@ second.shutdown()
 spin_until(peer, lambda: threads() == 1)
 print("one context", threads())
 
+said = []
+careful.create_subscription(
+    Log, "/rosout", lambda log: said.append(log.msg) if "which definition" in log.msg else None, 10
+)
+careful.create_subscription(Nameless, "/three", received.append, 10)
+unmoved.create_subscription(Nameless, "/four", lambda message: None, 10)
+tables._HASH_VERSION = 0  # as before ROS 2 Iron
+one, two = (peer.create_publisher(Nameless_, name, 10) for name in ("/three", "/four"))
+tables._HASH_VERSION = 1
+spin_until(careful, lambda: said)
+one.publish(Nameless_(a=0.1))
+spin_until(careful, lambda: received)
+spin_until(careful, lambda: len(said) > 1, limit=1.0)  # it is not said twice
+print("without a hash", len(said), [message.a for message in received])
+received.clear()
+
+adapted.create_subscription(Ours, "/five", received.append, 10)
+five = peer.create_publisher(Theirs, "/five", 10)
+register(Adapter(Theirs, Ours, lambda old: Ours(a=1 / old.a)))
+spin_until(peer, five.get_subscription_count)
+for a in (0.0, 0.5):
+    five.publish(Theirs(a=a))
+spin_until(adapted, lambda: received)
+print("adapted", [message.a for message in received])
+received.clear()
+
 heard.clear()
 for number in range(MANY):
     node = Node(f"passing_{number}", enable_rosout=False, start_parameter_services=False)
@@ -71,7 +109,7 @@ for number in range(MANY):
         spin_until(careful, lambda number=number: len(heard) >= 1)
     node.destroy_node()
 watch = watch_of(careful.context)
-spin_until(careful, lambda: len(watch._nodes) <= 3)
+spin_until(careful, lambda: len(watch._nodes) <= 4)
 print("many", bool(heard), "watched nodes", sorted(node.node().get_name() for node in watch._nodes.values()))
 
 rclpy.shutdown()

@@ -124,7 +124,9 @@ class Watch:
             self._forget(endpoint)
             return
         count = getattr(node.handle, endpoint.count_by)(endpoint.counted)
-        others = [(part, peer) for part in endpoint.parts for peer in peers(node, part)]
+        others: list[tuple[Part, Peer]] = []
+        if count:  # infos take ten times as long
+            others = [(part, peer) for part in endpoint.parts for peer in peers(node, part)]
         if endpoint.guard is not None:
             endpoint.guard.see(others)
         others = [(part, peer) for part, peer in others if differs(peer, part) or not peer.type_hash]
