@@ -41,9 +41,15 @@ class ActionGuard:
         return all(known.hashes <= {known.part.type_hash} for known in self._others)
 
     def agrees(self, request_id: Any) -> bool:
-        """Whether the client that a request has come from has our definition in all parts."""
+        """Whether the client that a request has come from has our definition in all parts.
+
+        It may be discovered part by part. What a request is sent with is there before the request.
+        """
         client = participant_of(key_of(request_id))
-        return all(known.hash_of(client) == known.part.type_hash for known in self._others)
+        hashes = [(known.part.type_hash, known.hash_of(client)) for known in self._others]
+        return any(ours == found for ours, found in hashes) and all(
+            found in {ours, None} for ours, found in hashes
+        )
 
 
 class _GuardedHandle:

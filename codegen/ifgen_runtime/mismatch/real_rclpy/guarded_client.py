@@ -48,6 +48,8 @@ class ClientGuard:
         known = (self.requests.part, found.request), (self.responses.part, found.response)
         if all(part.type_hash == type_hash for part, type_hash in known):
             return found
+        if not (self.requests.hashes and self.responses.hashes):
+            return None  # discovered in part
         return found if applied(self._policy, "service client", known) is OnTypeMismatch.ADAPT else None
 
     def sent(self, number: int, served: _Served) -> None:

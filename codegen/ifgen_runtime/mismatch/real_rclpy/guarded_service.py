@@ -13,7 +13,6 @@ from ifgen_runtime.mismatch.real_rclpy.endpoints import Part, parts_of
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer
 from ifgen_runtime.mismatch.real_rclpy.handles import Service
 from ifgen_runtime.mismatch.real_rclpy.others import Others
-from ifgen_runtime.mismatch.real_rclpy.remembered import Remembered
 from ifgen_runtime.mismatch.real_rclpy.taking import key_of, participant_of
 
 
@@ -23,7 +22,6 @@ class ServiceGuard:
     def __init__(self, node: Any, parts: tuple[Part, ...], policy: OnTypeMismatch) -> None:
         self.requests, self.responses = (Others(node, part, participant_of) for part in parts)
         self._policy = policy
-        self._pending: Remembered[str] = Remembered()
 
     def see(self, others: Iterable[tuple[Part, Peer]]) -> None:
         """Take note of all clients that are there now."""
@@ -36,27 +34,26 @@ class ServiceGuard:
 
     def request(self, data: bytes, request_id: Any) -> Any:
         """The request to call back with; None if it is not to be delivered."""
-        key = key_of(request_id)
-        client = participant_of(key)
-        hashes = self.requests.hash_of(client), self.responses.hash_of(client)
-        if None in hashes:
+        client = participant_of(key_of(request_id))
+        type_hash = self.requests.hash_of(client)
+        # What receives the response may be discovered a little later.
+        response_hash = self.responses.hash_of(client) or self.responses.part.type_hash
+        if type_hash is None or self._is_refused(self.requests.part, type_hash):
             return None
-        request_hash, response_hash = map(str, hashes)
-        known = (self.requests.part, request_hash), (self.responses.part, response_hash)
-        if applied(self._policy, "service server", known) is OnTypeMismatch.REFUSE and not _are_ours(known):
+        if self._is_refused(self.responses.part, response_hash):
             return None
-        self._pending.set(key, response_hash)
-        return decoded(data, request_hash, self.requests.part.cls)
+        return decoded(data, type_hash, self.requests.part.cls)
 
     def response(self, response: Any, request_id: Any) -> Any:
-        """The response as it is sent: itself, or its bytes in another definition."""
+        """The response as it is sent: itself, or its bytes in another definition; None if it is refused."""
         part = self.responses.part
-        type_hash = self._pending.pop(key_of(request_id)) or part.type_hash
-        return encoded(response, type_hash, part.cls)
+        type_hash = self.responses.hash_of(participant_of(key_of(request_id))) or part.type_hash
+        return None if self._is_refused(part, type_hash) else encoded(response, type_hash, part.cls)
 
-
-def _are_ours(known: Iterable[tuple[Part, str]]) -> bool:
-    return all(part.type_hash == type_hash for part, type_hash in known)
+    def _is_refused(self, part: Part, type_hash: str) -> bool:
+        if type_hash == part.type_hash:
+            return False
+        return applied(self._policy, "service server", [(part, type_hash)]) is OnTypeMismatch.REFUSE
 
 
 class GuardedService(Service):
@@ -74,7 +71,9 @@ class GuardedService(Service):
 
     def service_send_response(self, response: Any, request_id: Any) -> None:
         """Send the response to a request, as its client understands it."""
-        super().service_send_response(self.guard.response(response, request_id), request_id)
+        sent = self.guard.response(response, request_id)
+        if sent is not None:
+            super().service_send_response(sent, request_id)
 
 
 def guarded_service(node: Any, name: str, qos: Any, cls: type[Any], policy: OnTypeMismatch) -> GuardedService:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import weakref
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, Final
 
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Part
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer, peers
 from ifgen_runtime.mismatch.real_rclpy.remembered import Remembered
+
+SEVERAL: Final = "several definitions"
+"""Instead of a hash: no adapter is for it, so it is refused."""
 
 
 class Others:
@@ -41,9 +44,9 @@ class Others:
         self.see(() if node is None else peers(node, self.part))
 
     def hash_of(self, key: bytes) -> str | None:
-        """The hash of whoever this is; None if nobody has seen it, or if it has several."""
+        """The hash of whoever this is; None if nobody has seen it, and no hash at all if it has several."""
         known = self._known.get(key)
         if known is None:
             self.look()
             known = self._known.get(key) or frozenset()
-        return next(iter(known)) if len(known) == 1 else None
+        return next(iter(known), None) if len(known) <= 1 else SEVERAL

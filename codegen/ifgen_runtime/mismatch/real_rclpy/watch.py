@@ -115,6 +115,8 @@ class Watch:
                 self._meet(endpoint)
             except InvalidHandle:  # destroyed meanwhile
                 continue
+            except Exception as error:  # whatever is wrong with one, the others are looked at
+                self._teller.complain(error)
         return met
 
     def _meet(self, endpoint: Endpoint) -> None:
