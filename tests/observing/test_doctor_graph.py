@@ -148,6 +148,7 @@ def test_a_definition_comes_from_the_node_where_it_is_not_installed(
     assert " --> /monitor:robot_msgs/msg/State.msg:2:14\n" in done.stdout
 
 
+@pytest.mark.slow
 def test_a_silent_node_costs_only_the_detail(project: Path, domain: dict[str, str]) -> None:
     done = doctor(project, domain, "--transport", "local", *running("old silent", "new"))
     assert done.returncode == 1
