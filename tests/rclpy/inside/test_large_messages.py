@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 import rclpy
+from ifgen_runtime.codec.choice import chosen
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import deserialize_message, serialize_message
@@ -75,6 +76,28 @@ def test_each_of_two_subscriptions_has_its_own(node: Node) -> None:
     spin_until(node, received, 2)
     received[0].data[0] = 99
     assert received[1] == image()
+
+
+@pytest.mark.skipif(chosen().extension is None, reason="the codec in C does not run here")
+def test_only_one_that_is_alone_and_takes_messages_gets_no_bytes(node: Node) -> None:
+    publisher = node.create_publisher(Image, "image", 10)
+
+    def queued(subscription: Any) -> str:
+        publisher.publish(image())
+        return type(subscription.handle.reader.take()[0]).__name__
+
+    alone = node.create_subscription(Image, "image", lambda _: None, 10)
+    assert queued(alone) == "Parcel"
+    viewing = node.create_subscription(Image, "image", lambda _: None, 10, views=True)
+    assert (queued(alone), queued(viewing)) == ("bytes", "bytes")
+    node.destroy_subscription(alone)
+    assert queued(viewing) == "bytes"
+    node.destroy_subscription(viewing)
+    raw = node.create_subscription(Image, "image", lambda _: None, 10)
+    assert queued(raw) == "Parcel"
+    publisher.publish(image())
+    raw.handle.take_message(Image, True)
+    assert queued(raw) == "bytes"
 
 
 def test_raw_subscriptions_get_bytes(node: Node) -> None:
