@@ -95,6 +95,11 @@ def test_what_is_safe_is_converted(adapt: Adapt) -> None:
 
 
 OPEN = [
+    (
+        "int8 OK=0\nint8 a\nbool x",
+        "int8 a",
+        "`a` has other constants: 0 is OK in `old.a`, and unknown here",
+    ),
     ("int64 a", "int32 a", "`a` is `int32`, and `old.a` is `int64`: does it always fit?"),
     ("float64 a", "float32 a", "`a` is `float32`, and `old.a` is `float64`: does it always fit?"),
     ("int64 a", "float64 a", "`a` is `float64`, and `old.a` is `int64`"),

@@ -23,12 +23,15 @@ _SHOWN: Final = 3
 def question(source: Field, target: Field, of_source: Message, of_target: Message, value: str) -> str:
     """The question whether a field means what another does, whose values it takes; empty if there is none.
 
-    `value` is the value of the source in Python, and the messages are those that the fields are of.
+    `value` is the value of the source in Python, and the messages are those that the fields are of. A type
+    description tells of no constants, and has no source.
     """
     if (one := _unit(source)) and (other := _unit(target)) and one != other:
         hint = _factor(one, other, source, value)
         return f"`{target.name}` is in {target.unit}, and `{value}` in {source.unit}{hint}"
-    changed = list(_changed(_constants_of(source, of_source), _constants_of(target, of_target), value))
+    constants = _constants_of(target, of_target)
+    is_told = bool(constants) or (of_target.source is not None and not of_target.constants)
+    changed = list(_changed(_constants_of(source, of_source), constants, value)) if is_told else []
     if changed:
         more = f"; and {len(changed) - _SHOWN} more" if len(changed) > _SHOWN else ""
         return f"`{target.name}` has other constants: {'; '.join(changed[:_SHOWN])}{more}"
@@ -75,8 +78,6 @@ def _is_integer(field: Field) -> bool:
 
 def _changed(source: Sequence[Constant], target: Sequence[Constant], value: str) -> Iterator[str]:
     """The values that have a name in the source and another one in the target, or none."""
-    if not target:
-        return  # a description tells of no constants; a definition without them says nothing of values
     names = {constant.name: constant for constant in target}
     for constant in source:
         beside = names.get(constant.name)
