@@ -130,8 +130,8 @@ def test_a_killed_process_is_noticed_and_its_leavings_are_removed(machine: Machi
     peers["a"].process.kill()
     killed = time.monotonic()
     for name in "bc":
-        peers[name].until("nodes b c", limit=1.0)
-    assert time.monotonic() - killed < 1.0
+        peers[name].until("nodes b c", limit=5.0)
+    assert time.monotonic() - killed < 5.0  # a connection that is only silent is given up after 10 s
     late = machine.run("d", "both")
     for peer in (peers["b"], peers["c"], late):
         peer.until("nodes b c d")

@@ -9,7 +9,6 @@ The order of events is therefore the same, and a run has the same state hash as 
 from __future__ import annotations
 
 import multiprocessing
-import os
 from collections.abc import Generator, Iterable
 from contextlib import contextmanager, suppress
 from functools import partial
@@ -26,9 +25,9 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
 from std_srvs.srv import Trigger
 
+from .alone import alone
 from .graph import NodeGraph, make_simulator
 
-_RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 _LONGEST = 60.0  # s for an answer; a later one is an error, because time must not go on without it
 _ENDING = 5.0  # s that the simulator's process has to end
 _KEPT = ("/rosout", "/parameter_events", "/head_camera")  # each process has its own; images take long
@@ -131,8 +130,6 @@ class Attendant(Node):
 @contextmanager
 def split(**parameters: Any) -> Generator[NodeGraph]:
     """Make all nodes except the simulator, which has these parameters and runs in another process."""
-    before = os.environ.get(_RANGE)
-    os.environ[_RANGE] = "OFF"  # the pipe is the only way
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe()
     process = context.Process(target=_serve, args=(there, parameters), daemon=True)
@@ -145,15 +142,12 @@ def split(**parameters: Any) -> Generator[NodeGraph]:
         here.close()
         process.join(_ENDING)
         process.kill()
-        if before is None:
-            del os.environ[_RANGE]
-        else:
-            os.environ[_RANGE] = before
 
 
 def _serve(pipe: Connection, parameters: dict[str, Any]) -> None:
     """Simulate until the other end is closed."""
-    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    with alone():
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     simulator = make_simulator(**parameters)
     attendant = Attendant(simulator)
     pipe.send((attendant.taken, attendant.published, attendant.begin()))

@@ -16,6 +16,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from ..show import crew
 from ..show.director import Director, Say, ScenarioError
+from .alone import alone
 
 Result = TypeVar("Result")
 
@@ -55,7 +56,8 @@ class NodeGraph:
         say: Say = lambda what: None,
     ) -> None:
         # Python handles Ctrl-C: it ends the scenario at once.
-        rclpy.init(args=_TRUE_STATE if true_state else [], signal_handler_options=SignalHandlerOptions.NO)
+        with alone():
+            rclpy.init(args=_TRUE_STATE if true_state else [], signal_handler_options=SignalHandlerOptions.NO)
         self.executor = SingleThreadedExecutor()
         self.director = Director(say)
         _, *others = chain.from_iterable(crew.members(group, with_extra=False) for group in crew.GROUPS)
