@@ -39,6 +39,7 @@ def test_where_all_is_well() -> None:
         "lark",
         "codec",
         "local transport",
+        "other processes",
         "real rclpy",
         "middleware",
         "type support",
