@@ -21,7 +21,9 @@ PIXELS = bytes(range(256)) * 64
 def node() -> Iterator[Node]:
     """A node; rclpy is up."""
     rclpy.init()
-    yield rclpy.create_node("large")
+    node = rclpy.create_node("large")
+    yield node
+    node.destroy_node()  # else the topic has its endpoints until they are collected as garbage
     rclpy.shutdown()
 
 

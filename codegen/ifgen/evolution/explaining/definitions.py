@@ -77,6 +77,8 @@ class Installed:
 
     def definition(self, type_name: str, type_hash: str) -> Known | None:
         """The definition with a hash; None if there is none."""
+        if type_name.count("/") != 2:
+            return None  # whoever sent it knows no type either
         key = type_name, type_hash
         if key not in self._found:
             self._found[key] = next(self._definitions(type_name, type_hash), None)
