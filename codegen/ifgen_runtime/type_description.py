@@ -46,11 +46,26 @@ def describe(cls: type[Any]) -> dict[str, Any]:
 
 def type_hash(cls: type[Any]) -> str:
     """The type hash (`RIHS01_...`) of an interface class, also of one that does not know its own."""
-    document = describe(cls)
-    for described in (document["type_description"], *document["referenced_type_descriptions"]):
-        for field in described["fields"]:
-            del field["default_value"]
-    return f"RIHS01_{hashlib.sha256(json.dumps(document).encode()).hexdigest()}"
+    return hash_of(describe(cls))
+
+
+def hash_of(document: dict[str, Any]) -> str:
+    """The type hash of what a description says. Its keys are in the order of `describe`."""
+    hashed = {
+        "type_description": _without_defaults(document["type_description"]),
+        "referenced_type_descriptions": [
+            _without_defaults(described) for described in document["referenced_type_descriptions"]
+        ],
+    }
+    return f"RIHS01_{hashlib.sha256(json.dumps(hashed).encode()).hexdigest()}"
+
+
+def _without_defaults(described: dict[str, Any]) -> dict[str, Any]:
+    fields = [
+        {key: value for key, value in field.items() if key != "default_value"}
+        for field in described["fields"]
+    ]
+    return {**described, "fields": fields}
 
 
 def sources(cls: type[Any]) -> list[tuple[str, str, str]]:

@@ -117,6 +117,13 @@ class RecordingTransport:
     def ask(self, client: Entity, on_reply: OnReply) -> Asking:
         return self._present(Asking(self, client, on_reply))
 
+    def inquire(self, server: Entity, data: bytes, patience: float) -> Callable[[], list[bytes]]:
+        answers: list[bytes] = []
+        asking = Asking(self, server, lambda answer, *_: answers.append(answer))
+        asking.gid = f"?{next(self._gids)}".encode().ljust(16, b"\0")
+        asking.ask(data, 1, 0)
+        return lambda: [answers.pop(0) for _ in range(len(answers))]
+
     def serve(self, server: Entity, on_request: OnRequest) -> Serving:
         return self._present(Serving(self, server, on_request))
 

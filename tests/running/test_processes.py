@@ -83,9 +83,9 @@ class Machine:
         }
         self.terminals: list[Terminal] = []
 
-    def run(self, *arguments: str, **environment: str) -> Terminal:
-        """Open a terminal, and run the peer there."""
-        terminal = Terminal(self.environment | environment, PEER, *arguments)
+    def run(self, *arguments: str, program: str = PEER, **environment: str) -> Terminal:
+        """Open a terminal, and run a program there."""
+        terminal = Terminal(self.environment | environment, program, *arguments)
         self.terminals.append(terminal)
         return terminal
 

@@ -124,6 +124,7 @@ class Participant:
         self.domain = Domain.numbered(domain_id)
         self.keeps_to_itself = range_is_off() or not isinstance(timing.driver, timing.SystemDriver)
         """Whether nobody outside this process is to see it. A virtual clock is nobody else's."""
+        self.has_ended = False  # whether its context was shut down; then nothing is said any more
         # 16-byte gids as DDS makes them: vendor, process, participant, entity
         process = os.getpid() & 0xFFFFFFFF
         self._prefix = b"\x01\x0f" + process.to_bytes(4, "big") + next(self._prefixes).to_bytes(6, "big")
@@ -320,7 +321,11 @@ class GraphNode:
         from rmw_local.telling import tell_of  # late: definitions hardly ever differ
 
         encounters, newcomer.encounters = newcomer.encounters, ()
-        tell_of(encounters)
+        tell_of(each for each in encounters if not each.crosses_processes)
+        far = [each for each in encounters if each.crosses_processes]
+        link = self.participant.domain.link
+        if far and link is not None:
+            link.attend_to(far)
 
     def _renounce(self, entity: Entity, changed: Iterable[ReadySource]) -> None:
         link = self.participant.domain.link

@@ -14,21 +14,36 @@ from rmw_local.message import type_name
 from rmw_local.service import ServiceEndpoint
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
+
+    from ifgen_runtime.mismatch.sides import Definition
 
     from rmw_local.encounter import Encounter, Party
 
 _ACTION = "/_action/"
 _SHOWN = len("RIHS01_") + 16
+_SUFFIXES = ("SendGoal", "GetResult", "FeedbackMessage")  # of the names of parts
 _PARTS = ("SendGoalService", "GetResultService", "FeedbackMessage")
 
 
-def tell_of(encounters: Iterable[Encounter]) -> None:
-    """Tell the listener, and log as the nodes whose policies were applied."""
+def tell_of(
+    encounters: Iterable[Encounter], elsewhere: Callable[[Party], Definition | None] = lambda _: None
+) -> None:
+    """Tell the listener, and log as the nodes whose policies were applied.
+
+    `elsewhere` knows the definitions of endpoints in other processes, as far as they are known.
+    """
     for encounter in encounters:
-        subject = _Subject(encounter)
+        subject = _Subject(encounter, elsewhere)
         if subject.is_said_here:
             _tell(subject.mismatch(), encounter)
+
+
+def part_of_action(encounter: Encounter) -> tuple[str, int]:
+    """The action that my endpoint belongs to, empty if none, and the number of the part."""
+    name, separator, _ = encounter.mine.name.partition(_ACTION)
+    action, part = encounter.mine.kind.action, encounter.mine.kind.name.rpartition("_")[2]
+    return (name, _SUFFIXES.index(part)) if separator and action and part in _SUFFIXES else ("", 0)
 
 
 def _tell(mismatch: Mismatch, encounter: Encounter) -> None:
@@ -59,8 +74,9 @@ def _missing(mismatch: Mismatch, said: str) -> str:
 class _Subject:
     """The topic or service of two endpoints, or the action that they are parts of."""
 
-    def __init__(self, encounter: Encounter) -> None:
+    def __init__(self, encounter: Encounter, elsewhere: Callable[[Party], Definition | None]) -> None:
         self._encounter = encounter
+        self._elsewhere = elsewhere
         mine, theirs = encounter.mine, encounter.theirs
         self._classes: tuple[type[Any], type[Any]] = (mine.kind.cls, theirs.kind.cls)
         self._kind = "service" if isinstance(mine, ServiceEndpoint) else "topic"
@@ -70,6 +86,8 @@ class _Subject:
             self._kind = "action"
             self._classes = (mine.kind.action, theirs.kind.action)
             self.is_said_here = mine.kind.cls is _first_that_differs(*self._classes)
+        elif encounter.crosses_processes and part_of_action(encounter)[0]:
+            self._kind = "action"  # of theirs, only the hash of a part is known
         else:
             self._name = mine.name
 
@@ -90,7 +108,7 @@ class _Subject:
         if self._kind == "action":
             role = "action server" if role in ("publisher", "service server") else "action client"
         if party.is_remote:
-            return Side(party.node.full_name, role, party.kind.type_hash)
+            return Side(party.node.full_name, role, party.kind.type_hash, self._elsewhere(party))
         try:
             definition = definition_of(cls)
         except Exception:  # whoever made the class, it must not keep a node from being made

@@ -13,7 +13,7 @@ from typing import Any, Final
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 
-from ifgen_runtime.mismatch.real_rclpy.remembered import Once, Remembered
+from ifgen_runtime.mismatch.remembered import Once, Remembered
 from ifgen_runtime.mismatch.sides import Definition, definition_from
 
 _PATIENCE: Final = 0.5

@@ -14,7 +14,7 @@ from ifgen_runtime.mismatch.real_rclpy.endpoints import Part, parts_of
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer
 from ifgen_runtime.mismatch.real_rclpy.handles import Client
 from ifgen_runtime.mismatch.real_rclpy.others import Others
-from ifgen_runtime.mismatch.real_rclpy.remembered import Remembered
+from ifgen_runtime.mismatch.remembered import Remembered
 
 
 class _Served(NamedTuple):

@@ -15,8 +15,8 @@ from ifgen_runtime.mismatch.real_rclpy.endpoints import Part, parts_of
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer, differs
 from ifgen_runtime.mismatch.real_rclpy.handles import Subscription
 from ifgen_runtime.mismatch.real_rclpy.others import Others
-from ifgen_runtime.mismatch.real_rclpy.remembered import Once
 from ifgen_runtime.mismatch.real_rclpy.taking import Taken, take
+from ifgen_runtime.mismatch.remembered import Once
 
 
 @dataclass(slots=True)

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Part
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer, peers
-from ifgen_runtime.mismatch.real_rclpy.remembered import Remembered
+from ifgen_runtime.mismatch.remembered import Remembered
 
 SEVERAL: Final = "several definitions"
 """Instead of a hash: no adapter is for it, so it is refused."""

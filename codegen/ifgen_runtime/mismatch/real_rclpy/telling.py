@@ -15,7 +15,7 @@ from ifgen_runtime.mismatch.policy import OnTypeMismatch
 from ifgen_runtime.mismatch.real_rclpy.asking import Asker, Question
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer
-from ifgen_runtime.mismatch.real_rclpy.remembered import Once
+from ifgen_runtime.mismatch.remembered import Once
 from ifgen_runtime.mismatch.sides import Definition, Mismatch, Side, definition_of
 from ifgen_runtime.mismatch.told import Say, Told
 

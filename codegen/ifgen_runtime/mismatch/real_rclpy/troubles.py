@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint
-from ifgen_runtime.mismatch.real_rclpy.remembered import Once
+from ifgen_runtime.mismatch.remembered import Once
 from ifgen_runtime.type_description import type_name
 from ifgen_runtime.type_support import register
 

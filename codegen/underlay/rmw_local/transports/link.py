@@ -11,10 +11,9 @@ from __future__ import annotations
 import _thread
 import itertools
 import threading
-from collections import deque
 from collections.abc import Callable, Iterable
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from rmw_local import timing
 from rmw_local.graph import Domain, GraphNode, Participant, endpoints
@@ -24,6 +23,7 @@ from rmw_local.service import Letter, ServiceClient, ServiceEndpoint, ServiceSer
 from rmw_local.transports.others import Others
 from rmw_local.transports.remote import RemoteWriter
 from rmw_local.transports.seam import Entity, Kind
+from rmw_local.transports.teller import Teller
 from rmw_local.writer import Writer
 
 if TYPE_CHECKING:
@@ -31,9 +31,6 @@ if TYPE_CHECKING:
     from rmw_local.message import MessageType, ServiceType
     from rmw_local.qos import QosProfile
     from rmw_local.transports.seam import Asking, Presence, Publication, Serving, Transport
-
-_MOST_UNTOLD: Final = 1000
-"""The number of encounters with other definitions that wait to be told of."""
 
 Local = GraphNode | Writer | Reader | ServiceEndpoint
 
@@ -43,7 +40,7 @@ class Link:
 
     def __init__(self, domain: Domain, transport: Transport) -> None:
         self.others = Others(domain)
-        self._teller = _Teller()
+        self._teller = Teller(domain, transport)
         self._domain = domain
         self._transport = transport
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
@@ -69,6 +66,7 @@ class Link:
                 return
             self._closed = True
             self._presences.clear()
+        self._teller.close()
         self._transport.close()
         self._part()
 
@@ -104,6 +102,10 @@ class Link:
                 self._node_ids.pop(entity, None)
         if presence is not None:
             presence.close()
+
+    def attend_to(self, encounters: Iterable[Encounter]) -> None:
+        """Tell of encounters across processes, later and on another thread."""
+        self._teller.tell_of(encounters)
 
     # What leaves
 
@@ -154,7 +156,7 @@ class Link:
         _notify(changed)
         if joined is not None and not isinstance(joined, GraphNode) and joined.encounters:
             encounters, joined.encounters = joined.encounters, ()
-            self._teller.tell_of(encounters)
+            self.attend_to(encounters)
 
     def _on_alive(self, gid: bytes) -> None:
         writer = self.others.get(gid)
@@ -170,34 +172,6 @@ class Link:
             writer.note_life()
         # Otherwise nobody has announced this publisher: some tools send without.
         reader.accept((data, stamp, number, now))
-
-
-class _Teller:
-    """Says that definitions differ on a thread of its own: listeners and loggers are code of users."""
-
-    def __init__(self) -> None:
-        self._untold: deque[Encounter] = deque(maxlen=_MOST_UNTOLD)
-        self._lock = _thread.allocate_lock()
-        self._is_telling = False
-
-    def tell_of(self, encounters: Iterable[Encounter]) -> None:
-        """Tell later."""
-        with self._lock:
-            self._untold.extend(encounters)
-            begins, self._is_telling = not self._is_telling, True
-        if begins:
-            _thread.start_new_thread(self._tell, ())
-
-    def _tell(self) -> None:
-        from rmw_local.telling import tell_of  # late: definitions hardly ever differ
-
-        while True:
-            with self._lock:
-                if not self._untold:
-                    self._is_telling = False
-                    return
-                encounter = self._untold.popleft()
-            tell_of([encounter])
 
 
 class _Outlet:

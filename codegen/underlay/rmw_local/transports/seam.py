@@ -6,7 +6,7 @@ calls only queues and wakes. Matching and QoS are not its business.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final, Protocol
@@ -121,6 +121,14 @@ class Transport(Protocol):
 
     def ask(self, client: Entity, on_reply: OnReply) -> Asking:
         """Show a client to others."""
+        ...
+
+    def inquire(self, server: Entity, data: bytes, patience: float) -> Callable[[], Iterable[bytes]]:
+        """Send one request to all servers of a service without being seen; raises nothing.
+
+        Returns a function that returns what they have answered since the last call. Answers come for
+        `patience` [s]. No thread of the transport calls back, so nothing is in the way of the program's end.
+        """
         ...
 
     def serve(self, server: Entity, on_request: OnRequest) -> Serving:

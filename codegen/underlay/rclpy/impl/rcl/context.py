@@ -52,6 +52,7 @@ class Context(Destroyable):
     def invalidate(self) -> None:
         """Shut down, unless that has happened. Signal handlers call it too, so it takes no lock."""
         self.valid = False
+        self.participant.has_ended = True
 
     def _on_destroy(self) -> None:
         self.invalidate()

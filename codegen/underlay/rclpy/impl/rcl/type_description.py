@@ -6,8 +6,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from rmw_local.graph import endpoints
-from rmw_local.message import MessageType, ServiceType
-from rmw_local.service import ServiceEndpoint
 
 from .destroyable import Destroyable
 from .node import Node
@@ -39,11 +37,11 @@ class TypeDescriptionService(Destroyable):
         if not (wanted.startswith("RIHS01_") and len(wanted) == _HASH):
             response.failure_reason = "Failed to parse type hash"
             return response
-        found = next((kind for kind in _types_in_use(node) if kind.type_hash == wanted), None)
+        found = next((cls for cls in _types_in_use(node) if _hash_of(cls) == wanted), None)
         if found is None:
             response.failure_reason = "Type not currently in use by this node"
             return response
-        _fill(response, found.cls, with_sources=pyrequest.include_type_sources)
+        _fill(response, found, with_sources=pyrequest.include_type_sources)
         response.successful = True
         return response
 
@@ -51,13 +49,28 @@ class TypeDescriptionService(Destroyable):
         self._service.destroy_when_not_in_use()
 
 
-def _types_in_use(node: Node) -> Iterator[MessageType | ServiceType]:
+def _types_in_use(node: Node) -> Iterator[type[Any]]:
+    """The types of a node's endpoints; then what these are parts of, and their own parts."""
     place = node.graph_node
     domain = place.participant.domain
     with domain.lock:
-        mine = [endpoint for endpoint in endpoints(domain) if endpoint.node is place]
-    for endpoint in mine:
-        yield endpoint.service_type if isinstance(endpoint, ServiceEndpoint) else endpoint.message_type
+        mine = [endpoint.kind for endpoint in endpoints(domain) if endpoint.node is place]
+    yield from (kind.cls for kind in mine)
+    for kind in dict.fromkeys(mine):
+        for whole in (kind.cls, kind.action):
+            yield from _parts(whole)
+
+
+def _parts(whole: Any) -> Iterator[type[Any]]:
+    """A service or an action, and its parts; nothing of a message."""
+    if hasattr(whole, "Goal"):
+        yield from (whole, whole.Goal, whole.Result, whole.Feedback)
+    elif hasattr(whole, "Request"):
+        yield from (whole.Request, whole.Response, whole.Event)
+
+
+def _hash_of(cls: type[Any]) -> str:
+    return str(getattr(cls, "__type_hash__", ""))
 
 
 def _fill(response: Any, cls: type[Any], *, with_sources: bool) -> None:

@@ -7,7 +7,9 @@ from typing import Final, NamedTuple
 
 _WITH_LENGTH: Final = struct.Struct("<qqB16s")  # as released, with the length of the gid: 33 bytes
 _WITHOUT_LENGTH: Final = struct.Struct("<qq16s")  # newer: 32 bytes
-_GID: Final = 16  # bytes
+GID: Final = 16
+"""Bytes of a gid."""
+
 _NAMED: Final = 77  # bytes, of rmw_zenoh before 0.2.4, which writes the names of the fields as well
 
 
@@ -21,16 +23,16 @@ class Attachment(NamedTuple):
 
 def pack(number: int, stamp: int, gid: bytes) -> bytes:
     """The 33 bytes of an attachment."""
-    return _WITH_LENGTH.pack(number, stamp, _GID, gid)
+    return _WITH_LENGTH.pack(number, stamp, GID, gid)
 
 
 def unpack(data: bytes) -> Attachment:
     """Read an attachment of either length; raises ValueError."""
     if len(data) == _WITH_LENGTH.size:
         number, stamp, length, gid = _WITH_LENGTH.unpack(data)
-        if length == _GID:
+        if length == GID:
             return Attachment(number, stamp, gid)
-        raise ValueError(f"an attachment has a gid of {length} bytes, expected {_GID}")
+        raise ValueError(f"an attachment has a gid of {length} bytes, expected {GID}")
     if len(data) == _WITHOUT_LENGTH.size:
         return Attachment(*_WITHOUT_LENGTH.unpack(data))
     if len(data) == _NAMED:

@@ -7,8 +7,9 @@ interpreter from ending. They queue and wake, nothing else.
 from __future__ import annotations
 
 import _thread
+import secrets
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any, Final
 
@@ -22,7 +23,7 @@ from zenoh.ext import (
     declare_advanced_publisher,
     declare_advanced_subscriber,
 )
-from zenoh.handlers import Callback
+from zenoh.handlers import Callback, FifoChannel
 
 from rmw_local.notices import Repeated
 from rmw_local.qos import KEEP_ALL, RELIABLE, TRANSIENT_LOCAL, QosProfile
@@ -35,8 +36,17 @@ _KEPT_OF_ALL: Final = 10_000
 """The number of messages that are kept for late joiners where the history is "keep all"."""
 _MOST_REQUESTS: Final = 10_000
 """The number of requests of one service that may wait for their responses."""
+_MOST_ANSWERS: Final = 256
+"""The number of answers to an inquiry that wait: more would hold up Zenoh until somebody looks."""
+_TO_SERVERS: Final[dict[str, Any]] = {
+    "target": QueryTarget.ALL_COMPLETE,
+    "consolidation": ConsolidationMode.NONE,
+    "allowed_destination": Locality.REMOTE,
+}
 _HEARTBEAT: Final = 0.5  # [s], of transient local publishers
 _RESULT_SERVICE: Final = "/_action/get_result"
+_MOST_TRIES: Final = 500
+_BETWEEN_TRIES: Final = 0.001  # [s]
 _NO_END: Final = 100 * 365 * 86_400.0  # [s]
 
 
@@ -130,6 +140,21 @@ class ZenohTransport:
         handler = partial(self._on_reply, on_reply, gid)
         return _Asking(token, gid, self._session, self._key(client), handler, _NO_END if endless else None)
 
+    def inquire(self, server: Entity, data: bytes, patience: float) -> Callable[[], Iterable[bytes]]:
+        """Send a query under a gid that nobody else has seen."""
+        gid = secrets.token_bytes(attachments.GID)
+        attachment = attachments.pack(1, time.time_ns(), gid)
+        # A channel has no code of Python. A callback that Zenoh's threads drop while Python ends is fatal.
+        channel: Any = FifoChannel(_MOST_ANSWERS)
+        key = self._key(server)
+        try:
+            replies = self._session.get(
+                key, channel, payload=data, attachment=attachment, timeout=patience, **_TO_SERVERS
+            )
+        except zenoh.ZError:  # closed meanwhile
+            return tuple
+        return partial(self._answers, replies, gid)
+
     def serve(self, server: Entity, on_request: OnRequest) -> _Serving:
         """Declare a queryable."""
         serving = _Serving(self._key(server))
@@ -201,6 +226,16 @@ class ZenohTransport:
         if known is not None and known.gid == gid:
             on_reply(sample.payload.to_bytes(), known.number, known.stamp)
 
+    def _answers(self, replies: Any, gid: bytes) -> list[bytes]:
+        """The answers that wait in a channel."""
+        found: list[bytes] = []
+        try:
+            while (reply := replies.try_recv()) is not None:
+                self._on_reply(lambda data, *_: found.append(data), gid, reply)
+        except zenoh.ZError:  # no more will come
+            return found
+        return found
+
     def _unpacked(self, attached: zenoh.ZBytes | None) -> attachments.Attachment | None:
         try:
             return attachments.unpack(b"" if attached is None else attached.to_bytes())
@@ -218,7 +253,7 @@ class _Presence:
 
     def close(self) -> None:
         for part in self._parts:
-            _quietly(part.undeclare)
+            _undeclare(part)
 
 
 class _Publication(_Presence):
@@ -232,8 +267,8 @@ class _Publication(_Presence):
     def put(self, data: bytes, number: int, stamp: int) -> None:
         try:
             self._put(data, attachment=attachments.pack(number, stamp, self.gid))
-        except zenoh.ZError:
-            return  # closed meanwhile
+        except (zenoh.ZError, RuntimeError):
+            return  # closed meanwhile, or another thread is closing it
 
 
 class _Asking(_Presence):
@@ -250,10 +285,8 @@ class _Asking(_Presence):
         self._get = partial(
             session.get,
             key,
-            target=QueryTarget.ALL_COMPLETE,
-            consolidation=ConsolidationMode.NONE,
-            allowed_destination=Locality.REMOTE,
             timeout=timeout,
+            **_TO_SERVERS,
         )
         self._handler = handler
 
@@ -306,6 +339,19 @@ def _quietly(call: Callable[[], object]) -> None:
         call()
     except zenoh.ZError:
         return
+
+
+def _undeclare(part: Any) -> None:
+    """Undeclare something, once no other thread sends by it any more."""
+    for _ in range(_MOST_TRIES):
+        try:
+            part.undeclare()
+        except zenoh.ZError:
+            return
+        except RuntimeError:  # "Already borrowed"
+            time.sleep(_BETWEEN_TRIES)
+        else:
+            return
 
 
 def _blocks(qos: QosProfile) -> bool:

@@ -1,0 +1,100 @@
+"""Tells of endpoints in two processes that met and whose definitions differ."""
+
+from __future__ import annotations
+
+import _thread
+from collections import deque
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Final
+from weakref import WeakKeyDictionary
+
+from rmw_local.notices import say
+
+if TYPE_CHECKING:
+    from rmw_local.encounter import Encounter
+    from rmw_local.graph import Domain, GraphNode
+    from rmw_local.transports.asking import Asker
+    from rmw_local.transports.seam import Transport
+
+_MOST_UNTOLD: Final = 1000
+"""The number of encounters with other definitions that wait to be told of."""
+
+_FAREWELL: Final = 2.0
+"""Seconds that the end of a process waits for a warning that is being made."""
+
+
+class Teller:
+    """Asks for the other definitions, and warns, on a thread that lives while there is something to tell.
+
+    It is a thread of its own because listeners and loggers are code of users, and answers take time.
+    """
+
+    def __init__(self, domain: Domain, transport: Transport) -> None:
+        self._untold: deque[Encounter] = deque(maxlen=_MOST_UNTOLD)
+        self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
+        self._working = _thread.allocate_lock()  # while there is a thread
+        self._is_telling = self._is_over = False
+        self._asker: Asker | None = None  # once there is something to ask
+        self._domain = domain
+        self._transport = transport
+        self._actions: WeakKeyDictionary[GraphNode, WeakKeyDictionary[GraphNode, set[str]]]
+        self._actions = WeakKeyDictionary()
+
+    def tell_of(self, encounters: Iterable[Encounter]) -> None:
+        """Tell later."""
+        with self._lock:
+            self._untold.extend(encounters)
+            begins = bool(self._untold) and not (self._is_telling or self._is_over)
+            self._is_telling = self._is_telling or begins
+        if begins:
+            _thread.start_new_thread(self._work, ())
+
+    def close(self) -> None:
+        """Say nothing more. A warning that is being made is finished, unless it takes long."""
+        self._is_over = True
+        if self._working.acquire(timeout=_FAREWELL):
+            self._working.release()
+
+    def _work(self) -> None:
+        with self._working:
+            self._tell()
+
+    def _tell(self) -> None:
+        from rmw_local.transports.asking import Asker  # late, and here: definitions hardly ever differ
+
+        asker = self._asker = self._asker or Asker(self._domain, self._transport, lambda: self._is_over)
+        while batch := self._taken():
+            try:
+                asker.ask(each.theirs for each in batch)
+                for encounter in self._without_repetitions(batch):
+                    self._tell_of(encounter, asker)
+            except Exception as error:  # code of users: the next warning is to come, whatever it does
+                say(f"a listener for definitions that differ failed with {error!r}")
+
+    def _taken(self) -> list[Encounter]:
+        """All that is to be told; with nothing, the thread ends."""
+        with self._lock:
+            batch = [] if self._is_over else list(self._untold)
+            self._untold.clear()
+            self._is_telling = bool(batch)
+        return batch
+
+    def _tell_of(self, encounter: Encounter, asker: Asker) -> None:
+        from rmw_local.telling import tell_of
+
+        if not (self._is_over or encounter.mine.node.participant.has_ended):
+            tell_of([encounter], asker.definition)
+
+    def _without_repetitions(self, batch: Iterable[Encounter]) -> Iterator[Encounter]:
+        """All but further parts of an action whose two nodes have been told of."""
+        from rmw_local.telling import part_of_action
+
+        for encounter in sorted(batch, key=lambda each: part_of_action(each)[1]):
+            action, _ = part_of_action(encounter)
+            if action:
+                by_peer = self._actions.setdefault(encounter.mine.node, WeakKeyDictionary())
+                told = by_peer.setdefault(encounter.theirs.node, set())
+                if action in told:
+                    continue
+                told.add(action)
+            yield encounter
