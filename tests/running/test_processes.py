@@ -6,11 +6,7 @@ Each test has a domain of its own, which nobody else on this machine uses.
 from __future__ import annotations
 
 import os
-import queue
 import signal
-import subprocess
-import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,55 +14,13 @@ from pathlib import Path
 import pytest
 from ifgen_pytest.domains import own_domain
 
+from tests.running.terminals import Terminal
+
 pytest.importorskip("zenoh")
 if not hasattr(os, "getuid"):
     pytest.skip("processes find each other by sockets that this system lacks", allow_module_level=True)
 
 PEER = str(Path(__file__).parent / "peers/peer.py")
-LIMIT = 60.0  # [s]
-
-
-class Terminal:
-    """A program, and the lines that it prints."""
-
-    def __init__(self, environment: dict[str, str], *arguments: str) -> None:
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "ifgen", "run", "--transport", "local", *arguments],
-            env=environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-        )
-        self.lines: list[str] = []
-        self._new: queue.Queue[str] = queue.Queue()
-        self._reader = threading.Thread(target=self._read, daemon=True)
-        self._reader.start()
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        for line in self.process.stdout:
-            self._new.put(line.rstrip("\n"))
-
-    def until(self, beginning: str, limit: float = LIMIT) -> str:
-        """Wait for a line that begins so."""
-        end = time.monotonic() + limit
-        while True:
-            try:
-                line = self._new.get(timeout=max(end - time.monotonic(), 0.001))
-            except queue.Empty:
-                raise AssertionError(f"no line {beginning!r}, only {self.lines}") from None
-            self.lines.append(line)
-            if line.startswith(beginning):
-                return line
-
-    def end(self) -> int:
-        """Press Ctrl-C."""
-        self.process.send_signal(signal.SIGINT)
-        code = self.process.wait(LIMIT)
-        self._reader.join(LIMIT)
-        while not self._new.empty():
-            self.lines.append(self._new.get())
-        return code
 
 
 class Machine:

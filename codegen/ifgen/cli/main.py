@@ -98,14 +98,16 @@ class _Commands(click.Group):
             "nodl",
             "paths",
         ),
-        *("rules", "templates", "typings"),
+        *("router", "rules", "templates", "typings"),
     )
     module_of: Final = {
         "adapt": "evolution.adapt",
         "breaking": "evolution.breaking",
+        "demo": "running.demo",
         "diff": "evolution.diff",
         "lock": "evolution.lock",
         "paths": "editors",
+        "router": "running.router",
         "typings": "editors",
     }
     """The modules that are not called as their command."""

@@ -47,7 +47,7 @@ class Peer(Node):
 
 
 rclpy.init()
-node = Peer(*sys.argv[1:])
+node = Peer(*sys.argv[1:3])
 try:
     rclpy.spin(node)
 except (KeyboardInterrupt, ExternalShutdownException):

@@ -1,0 +1,1 @@
+"""Commands that run something until it ends, or Ctrl-C ends it."""

@@ -1,0 +1,63 @@
+"""Terminals in which a command of ifgen runs."""
+
+from __future__ import annotations
+
+import queue
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Sequence
+
+LIMIT = 60.0  # [s]
+
+
+class Command:
+    """`ifgen` with these words, and the lines that it prints."""
+
+    def __init__(self, environment: dict[str, str], *words: str, before: Sequence[str] = ()) -> None:
+        self.process = subprocess.Popen(
+            [*before, sys.executable, "-m", "ifgen", *words],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        self.lines: list[str] = []
+        self._new: queue.Queue[str] = queue.Queue()
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self._new.put(line.rstrip("\n"))
+
+    def until(self, beginning: str, limit: float = LIMIT) -> str:
+        """Wait for a line that begins so."""
+        end = time.monotonic() + limit
+        while True:
+            try:
+                line = self._new.get(timeout=max(end - time.monotonic(), 0.001))
+            except queue.Empty:
+                raise AssertionError(f"no line {beginning!r}, only {self.lines}") from None
+            self.lines.append(line)
+            if line.startswith(beginning):
+                return line
+
+    def end(self) -> int:
+        """Press Ctrl-C."""
+        self.process.send_signal(signal.SIGINT)
+        code = self.process.wait(LIMIT)
+        self._reader.join(LIMIT)
+        while not self._new.empty():
+            self.lines.append(self._new.get())
+        return code
+
+
+class Terminal(Command):
+    """A program on the local transport."""
+
+    def __init__(self, environment: dict[str, str], *arguments: str, before: Sequence[str] = ()) -> None:
+        super().__init__(environment, "run", "--transport", "local", *arguments, before=before)
