@@ -106,10 +106,24 @@ def test_an_address_of_another_machine(ifgen: Run) -> None:
 
 
 def test_tls_without_a_key(ifgen: Run, port: int) -> None:
-    done = ifgen("router", "--listen", f"tls/127.0.0.1:{port}")
+    endpoint = f"tls/127.0.0.1:{port}"
+    done = ifgen("router", "--listen", endpoint)
+    beginning = f"error[router-configuration]: a router cannot listen on {endpoint}"
+    assert (done.code, done.err) == (2, f"{beginning}: Missing TLS private key\n")
+    write(Path("router.key"), "no key\n")
+    write(Path("router.json5"), "{transport: {link: {tls: {listen_private_key: 'router.key'}}}}")
+    done = ifgen("router", "--listen", endpoint, "--config", "router.json5")
     assert done.code == 2
-    assert done.err.endswith("Missing TLS private key\n")
-    assert ".rs" not in done.err
+    assert done.err.startswith(beginning)
+
+
+def test_a_missing_file_of_tls(ifgen: Run, port: int, tmp_path: Path) -> None:
+    write(Path("router.json5"), "{transport: {link: {tls: {listen_private_key: 'router.key'}}}}")
+    done = ifgen("router", "--listen", f"tls/127.0.0.1:{port}", "--config", "router.json5")
+    assert done.code == 2
+    missing = "transport/link/tls/listen_private_key: there is no file 'router.key' that can be read"
+    assert done.err.startswith(f"error[router-configuration]: {missing}\n")
+    assert f"it is looked for in {tmp_path}" in " ".join(done.err.split())
 
 
 @pytest.mark.parametrize(

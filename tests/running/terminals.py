@@ -50,10 +50,15 @@ class Command:
         """Press Ctrl-C."""
         self.process.send_signal(signal.SIGINT)
         code = self.process.wait(LIMIT)
+        self.rest()
+        return code
+
+    def rest(self) -> list[str]:
+        """Return all lines, those until the end included."""
         self._reader.join(LIMIT)
         while not self._new.empty():
             self.lines.append(self._new.get())
-        return code
+        return self.lines
 
 
 class Terminal(Command):

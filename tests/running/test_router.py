@@ -18,11 +18,12 @@ import pytest
 from ifgen_pytest.domains import own_domain
 
 from tests.running.machines import Machine, two_machines
-from tests.running.terminals import Command, Terminal
+from tests.running.terminals import LIMIT, Command, Terminal
 
 pytest.importorskip("zenoh")
 
 PAGE = Path(__file__).parents[2] / "docs/processes.md"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 PEER = str(Path(__file__).parent / "peers/peer.py")
 
 
@@ -47,14 +48,18 @@ class Site:
         router.until("listening on")
         return router
 
+    def program(self, *words: str, at: str, on: Machine | None = None, **more: str) -> Terminal:
+        """A program that reaches others at a router only."""
+        environment = self.environment | {"ROS_STATIC_PEERS": at} | more
+        program = Terminal(environment, *words, before=on.enter if on else ())
+        self._running.append(program)
+        return program
+
     def peer(
         self, name: str, role: str, router: str, *words: str, on: Machine | None = None, **more: str
     ) -> Terminal:
-        """A program that reaches others at a router only."""
-        environment = self.environment | {"ROS_STATIC_PEERS": router} | more
-        peer = Terminal(environment, PEER, name, role, *words, before=on.enter if on else ())
-        self._running.append(peer)
-        return peer
+        """The peer, as such a program."""
+        return self.program(PEER, name, role, *words, at=router, on=on, **more)
 
     def configuration(self, name: str, **settings: object) -> str:
         """Write a file with a configuration of Zenoh."""
@@ -151,13 +156,40 @@ def test_routers_pass_on_to_each_other(site: Site, endpoints: list[str]) -> None
         each.until("nodes l t")
     listener.until("heard")
     far.process.kill()
-    assert near.until("connected") == f"connected to 0 of 1, trying on: {there}"
+    assert near.until("connected") == f"connected to 0 of 1 router, still trying: {there}"
     talker.until("nodes t")
     site.router("--listen", there)
     assert near.until("connected") == f"connected to {there}"
     talker.until("nodes l t")
     listener.until("nodes l t")
     listener.until("heard")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("server", "client", "arguments", "says"),
+    [
+        ("services/server.py", "services/client.py", ("41", "1"), "41 + 1 = 42"),
+        (
+            "action/fibonacci_server.py",
+            "action/fibonacci_client.py",
+            ("5",),
+            "succeeded: [0, 1, 1, 2, 3, 5]",
+        ),
+    ],
+    ids=["service", "action"],
+)
+def test_services_and_actions_work_over_two_routers(
+    site: Site, endpoints: list[str], server: str, client: str, arguments: tuple[str, ...], says: str
+) -> None:
+    here, there = endpoints
+    site.router("--listen", there)
+    site.router("--listen", here, "--connect", there).until("connected")
+    serving = site.program(str(EXAMPLES / server), at=there)
+    asking = site.program(str(EXAMPLES / client), *arguments, at=here)
+    assert asking.process.wait(LIMIT) == 0
+    assert any(line.endswith(says) for line in asking.rest())
+    assert serving.end() == 0
 
 
 @pytest.mark.slow

@@ -91,6 +91,7 @@ def _not_started(listens: Sequence[str], said: str) -> InputError:
         return InputError([Diagnostic("no-router", message, help=_ADVICE.get(code, _ANYWHERE))])
     if "lookup address" in said:
         return InputError([Diagnostic("no-router", f"{what}: {said}", help=_ANYWHERE)])
+    said = said.rpartition(" TLS listener on ")[2].partition(". ")[2] or said  # which `what` says already
     message = f"{what if named else 'a router cannot start'}: {said}"
     return UsageError([Diagnostic("router-configuration", message)])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -35,6 +36,13 @@ _BY_ADDRESS: Final = ("tcp", "udp", "tls", "quic", "ws")  # with a host and a po
 _ELSEWHERE: Final = ("serial", "unixsock-stream", "unixpipe", "vsock")
 _ENDPOINT: Final = re.compile(
     r"(?:(?P<protocol>[^/]+)/)?(?P<host>\[[^]/]+\]|[^]/:[?#]+)(?::(?P<port>\d{1,6}))?(?P<rest>[?#].*)?"
+)
+_FILES_OF_TLS: Final = tuple(
+    f"transport/link/tls/{name}"
+    for name in (
+        *("root_ca_certificate", "listen_private_key", "listen_certificate"),
+        *("connect_private_key", "connect_certificate"),
+    )
 )
 _PLACES: Final = (re.compile(r"--> (\d+):(\d+)"), re.compile(r"line: (\d+), column: (\d+)"))
 _IN_SOURCES: Final = re.compile(r" at /\S+?\.rs:\d+\.?")
@@ -73,6 +81,7 @@ def configuration(
             _set(config, path, json.dumps(ours))
     if (mode := json.loads(config.get_json("mode"))) != "router":
         raise _wrong(f"{file or _OVERRIDES} has the mode '{mode}'", 'a router has `mode: "router"`, or none')
+    _check_files(config)
     return config
 
 
@@ -135,6 +144,15 @@ def _from_file(file: Path) -> zenoh.Config:
     except zenoh.ZError as error:
         what = f"{file} is no configuration of Zenoh: {reason(error)}"
         raise _wrong(what, place=_place(Source(file, text), str(error))) from None
+
+
+def _check_files(config: zenoh.Config) -> None:
+    """Raise UsageError for a file of TLS that is missing: Zenoh does not say which."""
+    for path in _FILES_OF_TLS:
+        name: str | None = json.loads(config.get_json(path))
+        if name and not (Path(name).is_file() and os.access(name, os.R_OK)):
+            advice = None if Path(name).is_absolute() else f"it is looked for in {Path.cwd()}"
+            raise _wrong(f"{path}: there is no file '{name}' that can be read", advice)
 
 
 def _overrides(text: str) -> list[tuple[str, str]]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from ifgen.cli import terminal
 from ifgen.cli.arguments import EXISTING_FILE
 from ifgen.writing.interruption import terminable
 
@@ -78,4 +79,4 @@ def _news(router: Router) -> Iterator[str]:
         if connected >= expected:
             yield f"connected to {names}"
         else:
-            yield f"connected to {connected} of {expected}, trying on: {names}"
+            yield f"connected to {connected} of {terminal.counted(expected, 'router')}, still trying: {names}"
