@@ -20,7 +20,7 @@ on_both = pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", m
 
 
 def run(
-    folder: Path, *arguments: str, path: Sequence[Path] = (), limit: float = 300.0
+    folder: Path, *arguments: str, path: Sequence[Path] = (), limit: float = 200.0
 ) -> tuple[dict[str, set[str]], str]:
     """Run the tests in `folder`/generated; returns those that failed, by package, and what pytest printed.
 
@@ -32,19 +32,23 @@ def run(
     command += ["-W", "ignore:module 'sre_:DeprecationWarning"]  # the lark-parser of ROS's wheels is old
     command += ["-o", f"faulthandler_timeout={limit / 2:g}"]
     command += [f"--junitxml={report}", "--rootdir=.", "--tb=short", "--import-mode=importlib"]
-    done = subprocess.run(
+    with subprocess.Popen(
         [*command, *arguments, "generated"],
         cwd=folder,
         env=environment,
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         text=True,
-        timeout=limit,
-        check=False,
-    )
-    assert done.returncode in {0, 1}, done.stdout[-3000:] + done.stderr[-3000:]
+    ) as tests:
+        try:
+            output, errors = tests.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            tests.kill()
+            output, errors = tests.communicate()
+    assert tests.returncode in {0, 1}, output[-3000:] + errors[-3000:]
     failed: dict[str, set[str]] = {}
     for case in ElementTree.parse(report).iter("testcase"):
         package = case.attrib["classname"].split(".")[1]
         bad = case.find("failure") is not None or case.find("error") is not None
         failed.setdefault(package, set()).update({case.attrib["name"]} if bad else ())
-    return failed, done.stdout
+    return failed, output
