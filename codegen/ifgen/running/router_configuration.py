@@ -26,6 +26,7 @@ _OURS: Final[dict[str, object]] = {
     "mode": "router",
     "listen/endpoints": [DEFAULT_ENDPOINT],
     "scouting/multicast/enabled": False,
+    "scouting/delay": 0,  # nobody is looked for, so starting need not take half a second
     "connect/retry": {"period_init_ms": 1000, "period_max_ms": 4000, "period_increase_factor": 2},
     # As rmw_zenohd has them: many nodes may come at once, and they keep transient local messages by time.
     "timestamping/enabled": True,

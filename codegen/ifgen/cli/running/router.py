@@ -69,11 +69,11 @@ def _news(router: Router) -> Iterator[str]:
     if router.listens == (DEFAULT_ENDPOINT,):
         yield "`ifgen router --listen tcp/[::]:7447` lets other machines in"
     names, expected = ", ".join(router.connects), len(router.connects)
-    before = None if expected else 0
+    before = None
     while True:
         time.sleep(_LOOK_EVERY)
-        connected = router.connected()
-        if connected == before:
+        connected = router.connected() if expected else None
+        if connected is None or connected == before:
             continue
         before = connected
         if connected >= expected:
