@@ -101,4 +101,4 @@ def _same(message: Any) -> Any:
     return message
 
 
-__all__ = ["adapter_between", "in_class"]
+__all__ = ["adapter_between", "adapter_for", "in_class"]

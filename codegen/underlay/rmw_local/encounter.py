@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
+from rmw_local.message import Elsewhere
 from rmw_local.origin import Origin
 from rmw_local.passage import Downgrading, Marking
 
@@ -28,13 +29,15 @@ class Encounter(NamedTuple):
     """A pair of endpoints. `mine` is the one whose node's policy was applied: on a topic, the reader.
 
     `wanted` is that policy, and `policy` what came of it: a node that has no adapter refuses. Endpoints in
-    two processes always refuse each other, because the type hash is part of what a message is addressed to.
+    two processes refuse each other, because the type hash is part of what a message is addressed to. Only a
+    subscription that adapts also takes what is addressed to the other hash.
     """
 
     mine: Party
     theirs: Party
     wanted: str
     policy: str
+    origin: Origin | None = None  # of messages, where they flow nevertheless
 
     @property
     def crosses_processes(self) -> bool:
@@ -42,8 +45,15 @@ class Encounter(NamedTuple):
         return self.mine.is_remote or self.theirs.is_remote
 
     @property
+    def adapts(self) -> bool:
+        """Whether messages are converted between the two."""
+        return self.policy == _ADAPT
+
+    @property
     def withholds(self) -> bool:
         """Whether mine is to get nothing from anybody else either."""
+        if self.policy == _ADAPT:
+            return False
         return not self.crosses_processes or (self.mine.role == "subscription" and self.wanted != _WARN)
 
 
@@ -52,15 +62,17 @@ def meet_on_topic(writer: Writer, reader: Reader) -> tuple[Encounter, Origin | N
 
     Called with the domain's lock held, as is `meet_on_service`.
     """
-    if reader.is_remote or writer.is_remote:
+    if reader.is_remote:
         return _across_processes(reader, writer), None
     wanted = policy = _policy(reader, writer)
     adapter = None
     if wanted == _ADAPT:
         adapter = _adapter(writer.message_type, reader.message_type)
         policy = _REFUSE if adapter is None else _ADAPT
+    if writer.is_remote and adapter is None:
+        policy = _REFUSE
     origin = None if policy == _REFUSE else Origin("topic", reader.topic, writer.node, adapter)
-    return Encounter(reader, writer, wanted, policy), origin
+    return Encounter(reader, writer, wanted, policy, origin), origin
 
 
 def meet_on_service(client: ServiceClient, server: ServiceServer) -> tuple[Encounter, Ends | None]:
@@ -116,9 +128,11 @@ def _adapted(mine: ServiceEndpoint, theirs: ServiceEndpoint) -> Ends | None:
 
 
 def _adapter(theirs: MessageType, mine: MessageType) -> Adapter | None:
-    from ifgen_runtime.mismatch.conversion import adapter_between  # late: only nodes that adapt need it
+    from ifgen_runtime.mismatch import conversion  # late: only nodes that adapt need it
 
-    return adapter_between(theirs.cls, mine.cls)
+    if theirs.cls is Elsewhere:  # so no adapter can follow from those of its fields
+        return conversion.adapter_for(theirs.type_hash, mine.cls)
+    return conversion.adapter_between(theirs.cls, mine.cls)
 
 
 def _origin(peer: ServiceEndpoint, adapter: Adapter | None = None) -> Origin:

@@ -40,6 +40,7 @@ class Reader(ReadySource, Endpoint):
     """A reader of one topic. Filling and emptying the queue takes no lock: a bounded deque is atomic."""
 
     role = "subscription"
+    stands_in = False  # whether it is another one again, in another process, for a definition that it adapts
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         ReadySource.__init__(self)

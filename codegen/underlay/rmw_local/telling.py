@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 _ACTION = "/_action/"
 _SHOWN = len("RIHS01_") + 16
+_BETWEEN_PROCESSES = (
+    "\nBetween processes only equal definitions meet, so nothing is exchanged.",
+    "\nBetween processes only equal definitions meet, unless the subscription adapts.",
+)
 _SUFFIXES = ("SendGoal", "GetResult", "FeedbackMessage")  # of the names of parts
 _PARTS = ("SendGoalService", "GetResultService", "FeedbackMessage")
 
@@ -56,10 +60,11 @@ def _tell(mismatch: Mismatch, encounter: Encounter) -> None:
         text = f"{mismatch.kind} '{mismatch.name}': more endpoints differ, which is not said any more"
     else:
         text = explanation(mismatch)
-        if encounter.crosses_processes:
-            text += "\nBetween processes only equal definitions meet, so nothing is exchanged."
-        elif encounter.wanted != encounter.policy:
+        lacks_adapter = encounter.wanted == "adapt" != encounter.policy
+        if lacks_adapter and not (encounter.crosses_processes and mismatch.mine.role != "subscription"):
             text += _missing(mismatch, text)
+        if encounter.crosses_processes and not encounter.adapts:
+            text += _BETWEEN_PROCESSES[mismatch.mine.role == "publisher"]
     report.say(node, text, is_warning=mismatch.policy != "adapt")
 
 

@@ -76,11 +76,14 @@ class Topic:
             return []  # DDS keeps topics of different types apart without a word
         if writer.qos.avoid_ros_namespace_conventions != reader.qos.avoid_ros_namespace_conventions:
             return []  # in DDS one of them has a prefix to its name
+        are_equal = writer.message_type.type_hash == reader.message_type.type_hash
         policy_kind = mismatch(writer.qos, reader.qos)
+        if reader.stands_in and (policy_kind is not None or not are_equal):
+            return []  # whom it stands for has met this writer
         if policy_kind is not None:
             return _refuse_qos(writer, reader, policy_kind)
         origin = None
-        if writer.message_type.type_hash != reader.message_type.type_hash:
+        if not are_equal:
             from rmw_local.encounter import meet_on_topic  # late: definitions hardly ever differ
 
             encounter, origin = meet_on_topic(writer, reader)

@@ -118,7 +118,7 @@ class Writer(Endpoint):
             reader.liveliness_changed.watch(lease)
             self._leases = {**self._leases, reader: lease}
         if not reader.is_remote:
-            self._receiver(reader, origin)
+            self.receiver(reader, origin)
         self.matches = (*self.matches, reader)
         self.settle_route()
 
@@ -127,7 +127,7 @@ class Writer(Endpoint):
         self.outlet = outlet
         self.settle_route()
 
-    def _receiver(self, reader: Reader, origin: Origin | None = None) -> Reader | Marking:
+    def receiver(self, reader: Reader, origin: Origin | None = None) -> Reader | Marking:
         """The reader, or what stands for it."""
         known = self._marking.get(reader)
         origin = origin or self._own_origin
@@ -154,7 +154,7 @@ class Writer(Endpoint):
 
     def settle_route(self) -> None:
         """Choose how to serialise for the readers that there are now. Called with the domain's lock held."""
-        near = tuple(self._receiver(reader) for reader in self.matches if not reader.is_remote)
+        near = tuple(self.receiver(reader) for reader in self.matches if not reader.is_remote)
         kind = self.message_type
         serialize = kind.serialize
         if self.outlet is not None and (self._keeps or len(near) < len(self.matches)):
@@ -214,7 +214,7 @@ class DurableWriter(Writer):
         """Replay what is kept to a transient local reader, then deliver to it as well."""
         with self._lock:
             if reader.qos.durability == self.qos.durability and not reader.is_remote:
-                self._replay(self._receiver(reader, origin))
+                self._replay(self.receiver(reader, origin))
             super().connect(reader, origin)
 
     def attach(self, outlet: Outlet | None) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -90,6 +92,10 @@ def test_tokens_and_gids() -> None:
     assert tokens.write(0, "abc1", entity) == TALKER
     assert tokens.session_of(TALKER) == "abc1"
     assert tokens.read(f"{TALKER}/buffer:cpu/more").qos == RESOLVED  # as newer ones append
+    adapting = tokens.write(0, "abc1", replace(entity, stands_in=True))
+    assert adapting == f"{TALKER}/ifgen_adapts"
+    assert tokens.read(adapting).stands_in
+    assert not entity.stands_in
     node = tokens.read("@ros2_lv/7/abc1/2/2/NN/%/%ns1%deep/talker")
     assert (node.kind, node.namespace, node.node) == (Kind.NODE, "/ns1/deep", "talker")
     humble = tokens.read(TALKER.replace(STRING_HASH, "TypeHashNotSupported"))

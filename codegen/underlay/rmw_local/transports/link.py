@@ -12,6 +12,7 @@ import _thread
 import itertools
 import threading
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -48,6 +49,7 @@ class Link:
         self._ids = itertools.count()
         self._node_ids: dict[GraphNode, int] = {}
         self._presences: dict[Local, Presence] = {}
+        self._adapted: dict[Reader, dict[str, Presence]] = {}  # by the hashes of other definitions
 
     def open(self) -> None:
         """Join: learn of the others, and announce everything that is there. Raises TransportError."""
@@ -66,6 +68,7 @@ class Link:
                 return
             self._closed = True
             self._presences.clear()
+            self._adapted.clear()
         self._teller.close()
         self._transport.close()
         self._part()
@@ -100,12 +103,35 @@ class Link:
             presence = self._presences.pop(entity, None)
             if isinstance(entity, GraphNode):
                 self._node_ids.pop(entity, None)
-        if presence is not None:
-            presence.close()
+            further = self._adapted.pop(entity, {}) if isinstance(entity, Reader) else {}
+        for each in (presence, *further.values()):
+            if each is not None:
+                each.close()
 
     def attend_to(self, encounters: Iterable[Encounter]) -> None:
-        """Tell of encounters across processes, later and on another thread."""
+        """Receive what is adapted, and tell of encounters across processes, later and on other threads."""
+        encounters = list(encounters)
+        adapting = [
+            each for each in encounters if each.adapts and not _participant(each.mine).keeps_to_itself
+        ]
+        if adapting:
+            _thread.start_new_thread(self._adapt, (adapting,))
         self._teller.tell_of(encounters)
+
+    def _adapt(self, encounters: Iterable[Encounter]) -> None:
+        """Subscribe once more, to messages that are addressed to other definitions."""
+        from rmw_local.transports.adapted import Adapted  # late: definitions hardly ever differ
+
+        for encounter in encounters:
+            adapted = Adapted(self.others, encounter)
+            reader = adapted.reader
+            with self._lock:
+                known = self._adapted.get(reader, {})
+                if self._closed or reader.closed or adapted.type_hash in known:
+                    continue
+                entity = replace(self._described(reader), type_hash=adapted.type_hash, stands_in=True)
+                presence = self._transport.subscribe(entity, adapted)
+                self._adapted[reader] = {**known, adapted.type_hash: presence}
 
     # What leaves
 
@@ -167,7 +193,9 @@ class Link:
         now = timing.time_ns()
         writer = self.others.get(gid)
         if isinstance(writer, RemoteWriter):
-            if not writer.reaches(reader) or stamp <= now - writer.qos.lifespan:
+            # Another definition has a subscription of its own (`Adapted`).
+            is_matched = writer.kind.type_hash == reader.kind.type_hash and writer.reaches(reader)
+            if not is_matched or stamp <= now - writer.qos.lifespan:
                 return  # not matched, or too old
             writer.note_life()
         # Otherwise nobody has announced this publisher: some tools send without.

@@ -87,6 +87,7 @@ class RemoteReader(Reader):
         kind = RemoteType(entity.type_name, entity.type_hash)
         super().__init__(node, kind, entity.name, entity.qos)
         self.gid = entity.gid
+        self.stands_in = entity.stands_in
 
 
 class RemoteClient(ServiceClient):

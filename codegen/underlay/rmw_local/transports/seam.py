@@ -32,7 +32,8 @@ class Entity:
 
     `node_id` and `entity_id` count within its process. `name` is the full name of the topic or service;
     `type_hash` is empty if there is none. `peer` is the id of its process, and `gid` its own (16 bytes): a
-    transport fills them in.
+    transport fills them in. `stands_in` says that it is the second announcement of a subscription, for the
+    publishers of another definition, whose messages it adapts.
     """
 
     kind: Kind
@@ -47,6 +48,7 @@ class Entity:
     qos: QosProfile = _NO_PROFILE
     peer: str = ""
     gid: bytes = b""
+    stands_in: bool = False
 
 
 OnEntity = Callable[[Entity, bool], None]

@@ -47,7 +47,7 @@ class _Snapshot:
             self.nodes = list(domain.nodes)
             topics, services = list(domain.topics.values()), list(domain.services.values())
             self.writers = [writer for topic in topics for writer in topic.writers]
-            self.readers = [reader for topic in topics for reader in topic.readers]
+            self.readers = [reader for topic in topics for reader in topic.readers if not reader.stands_in]
             self.servers = [server for service in services for server in service.servers]
             self.clients = [client for service in services for client in service.clients]
 

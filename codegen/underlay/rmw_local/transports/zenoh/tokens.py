@@ -1,7 +1,8 @@
 """Liveliness tokens: the graph, a text for each node and each endpoint.
 
 `@ros2_lv/<domain>/<session>/<node id>/<entity id>/<kind>/<enclave>/<namespace>/<node>`, and for endpoints
-`/<name>/<type>/<hash>/<qos>`. What follows after that is newer than we are, and is ignored.
+`/<name>/<type>/<hash>/<qos>`. What follows after that is newer than we are, and is ignored, but for our own
+`/ifgen_adapts`: another token of the same subscription, with the hash of a definition that it adapts.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from rmw_local.transports.zenoh import qos_text
 from rmw_local.transports.zenoh.keys import NO_HASH, dds_type, hash_of, ros_type
 
 _PREFIX: Final = "@ros2_lv"
+_STANDS_IN: Final = "ifgen_adapts"
 _LONGEST: Final = 2048  # characters; names of ROS have at most 255
 _NODE_PARTS, _ENDPOINT_PARTS = 9, 13
 _SESSION: Final = re.compile(r"[0-9a-f]{1,32}", re.ASCII)
@@ -48,6 +50,8 @@ def write(domain: int, session: str, entity: Entity) -> str:
             entity.type_hash or NO_HASH,
             qos_text.write(entity.qos),
         ]
+        if entity.stands_in:
+            parts.append(_STANDS_IN)
     return "/".join(parts)
 
 
@@ -82,6 +86,7 @@ def read(token: str) -> Entity:
         type_name=ros_type(type_name),
         type_hash=hash_of(type_hash),
         qos=qos_text.read(profile),
+        stands_in=_STANDS_IN in parts[_ENDPOINT_PARTS:],
     )
 
 
