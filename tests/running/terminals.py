@@ -56,6 +56,10 @@ class Command:
     def rest(self) -> list[str]:
         """Return all lines, those until the end included."""
         self._reader.join(LIMIT)
+        return self.so_far()
+
+    def so_far(self) -> list[str]:
+        """Return the lines until now."""
         while not self._new.empty():
             self.lines.append(self._new.get())
         return self.lines
