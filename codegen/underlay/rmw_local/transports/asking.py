@@ -15,7 +15,7 @@ from ifgen_runtime.mismatch.remembered import Once, Remembered
 from ifgen_runtime.mismatch.sides import Definition, definition_from
 from ifgen_runtime.type_description import hash_of
 
-from rmw_local.message import DecodeError, service_type
+from rmw_local.message import service_type
 from rmw_local.transports.seam import Entity, Kind
 
 if TYPE_CHECKING:
@@ -132,9 +132,10 @@ class Asker:
             return
         try:
             definition = definition_from(self._kind.response.deserialize(data))
-        except (DecodeError, ValueError):  # no answer at all, or the node does not know
+            is_true = hash_of(definition.document) == question.type_hash
+        except Exception:  # the node does not know, or has sent whatever it likes: the warning is to come
             return
-        if hash_of(definition.document) == question.type_hash:
+        if is_true:
             self._by_hash.set(question.type_hash, definition)
         else:
             self._lies.set(question, definition)

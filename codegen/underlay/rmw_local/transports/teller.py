@@ -64,12 +64,9 @@ class Teller:
 
         asker = self._asker = self._asker or Asker(self._domain, self._transport, lambda: self._is_over)
         while batch := self._taken():
-            try:
-                asker.ask(each.theirs for each in batch)
-                for encounter in self._without_repetitions(batch):
-                    self._tell_of(encounter, asker)
-            except Exception as error:  # code of users: the next warning is to come, whatever it does
-                say(f"a listener for definitions that differ failed with {error!r}")
+            asker.ask(each.theirs for each in batch)
+            for encounter in self._without_repetitions(batch):
+                self._tell_of(encounter, asker)
 
     def _taken(self) -> list[Encounter]:
         """All that is to be told; with nothing, the thread ends."""
@@ -82,8 +79,12 @@ class Teller:
     def _tell_of(self, encounter: Encounter, asker: Asker) -> None:
         from rmw_local.telling import tell_of
 
-        if not (self._is_over or encounter.mine.node.participant.has_ended):
+        if self._is_over or encounter.mine.node.participant.has_ended:
+            return
+        try:
             tell_of([encounter], asker.definition)
+        except Exception as error:  # code of users: the next warning is to come, whatever it does
+            say(f"a listener for definitions that differ failed with {error!r}")
 
     def _without_repetitions(self, batch: Iterable[Encounter]) -> Iterator[Encounter]:
         """All but further parts of an action whose two nodes have been told of."""
