@@ -76,7 +76,7 @@ class Asker:
         return self._by_hash.get(question.type_hash) or self._lies.get(question)
 
     def _questions(self, parties: Iterable[Party]) -> list[Question]:
-        """What is worth asking: of each unknown definition a few nodes, first one of each."""
+        """The questions worth asking: to a few nodes with each unknown definition, first to one of each."""
         unknown = sorted(
             {_question(each) for each in parties if self._by_hash.get(each.kind.type_hash) is None},
             key=lambda question: question.type_hash,

@@ -77,7 +77,7 @@ class Teller:
         return batch
 
     def _tell_of(self, encounter: Encounter, asker: Asker) -> None:
-        from rmw_local.telling import tell_of
+        from rmw_local.telling import tell_of  # late: only nodes that differ need it
 
         if self._is_over or encounter.mine.node.participant.has_ended:
             return
@@ -88,7 +88,7 @@ class Teller:
 
     def _without_repetitions(self, batch: Iterable[Encounter]) -> Iterator[Encounter]:
         """All but further parts of an action whose two nodes have been told of."""
-        from rmw_local.telling import part_of_action
+        from rmw_local.telling import part_of_action  # late: as above
 
         for encounter in sorted(batch, key=lambda each: part_of_action(each)[1]):
             action, _ = part_of_action(encounter)
