@@ -32,12 +32,12 @@ demo: $(VENV)/.run  ## see ifgen work on real interfaces, and a humanoid that wa
 	@$(BIN)/ifgen demo
 
 test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as well)
-	$(BIN)/pytest -n auto -m "not slow and not alone"
-	IFGEN_CODEC=python $(BIN)/pytest -n auto -m "not slow and not alone" $(BOTH_CODECS)
+	$(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone"
+	IFGEN_CODEC=python $(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone" $(BOTH_CODECS)
 	$(BIN)/pytest -n auto --transport both generated
 
 test-slow: $(VENV)/.test  ## run the tests that take longer
-	$(BIN)/pytest -n auto -m "slow and not alone"
+	$(BIN)/pytest -n auto --dist worksteal -m "slow and not alone"
 	$(BIN)/pytest -m alone
 
 test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in its own environment

@@ -36,7 +36,7 @@ def meet(policy: str) -> tuple[dict[str, Any], str]:
     return seen, ran.stderr
 
 
-@pytest.mark.parametrize("policy", ["warn", "refuse", "adapt"])
+@pytest.mark.parametrize("policy", ["warn", pytest.param("refuse", marks=pytest.mark.slow), "adapt"])
 def test_peers_with_other_definitions(policy: str) -> None:
     seen, warnings = meet(policy)
     actions = policy if policy == "warn" else "refuse"

@@ -109,8 +109,9 @@ rclpy.init()
 node = rclpy.create_node("talker" if role == "old" else "listener")
 executor = SingleThreadedExecutor()
 executor.add_node(node)
+spinning = threading.Thread(target=executor.spin)
 if role == "old":
-    threading.Thread(target=executor.spin, daemon=True).start()
+    spinning.start()
 for line in iter(sys.stdin.readline, ""):
     pair = Pair(int(line))
     if role == "new":
@@ -119,4 +120,7 @@ for line in iter(sys.stdin.readline, ""):
     end = pair.publish(node)
     sys.stdin.readline()  # the listener has done with it
     end()
+executor.shutdown()
+if role == "old":
+    spinning.join()  # real rclpy aborts if Python ends under it
 rclpy.shutdown()

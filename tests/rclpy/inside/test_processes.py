@@ -255,7 +255,7 @@ def test_the_graph_shows_both_processes(two: tuple[Pair, Node, Node]) -> None:
     publisher = one.create_publisher(String, "/space/word", asked)
     service = one.create_service(SetBool, "switch", lambda _, response: response)
     pair.until(lambda: other.count_publishers("/space/word") == 1 and other.count_services("/switch") == 1)
-    assert set(other.get_node_names()) == set(one.get_node_names()) == {"one", "two"}
+    pair.until(lambda: set(other.get_node_names()) == set(one.get_node_names()) == {"one", "two"})
     (info,) = other.get_publishers_info_by_topic("/space/word")
     assert (info.node_name, info.node_namespace, info.topic_type) == ("one", "/", "std_msgs/msg/String")
     assert str(info.topic_type_hash) == String.__type_hash__
