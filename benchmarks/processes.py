@@ -6,7 +6,8 @@ A process asks, another one echoes. The peers take turns in one run, and are sto
 Wall time from `publish` to the callback that gets the echo, medians over the rounds of each round's p50 and
 p99. Real rclpy runs with its defaults, and with 64 MB of shared memory, without which it copies large
 messages over UDP. Without the ROS wheels only ours is measured. `asked` is the target of the ratio to the
-better one.
+better one. Then come messages of several sizes through sockets and through shared memory, and what a process
+needs beside one that has everybody in it.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -38,10 +40,12 @@ LATENCIES = (
     ("service", 100, "<= 0.7", ""),
     ("action goal to result", 10, "<= 0.7", ""),
 )
+SIZES = ("Image 16 kB", "Image 64 kB", "Image 128 kB", "Image 256 kB", "Image 0.9 MB", "Image 6.2 MB")
 BURST = 5000  # messages
 STARTS = 5
 IDLE = 3.0  # [s]
 
+_PATIENCE = "transport/link/tx/lease=600000"  # [ms]
 _PROFILE = """<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
 <transport_descriptors><transport_descriptor><transport_id>shm</transport_id><type>SHM</type>
 <segment_size>67108864</segment_size></transport_descriptor></transport_descriptors>
@@ -74,6 +78,10 @@ def _messages() -> dict[str, Any]:
         "JointState(30)": JointState(
             name=[f"joint_{number}" for number in range(30)], position=joints, velocity=joints, effort=joints
         ),
+        "Image 16 kB": Image(height=64, width=256, step=256, encoding="mono8", data=bytes(16_384)),
+        "Image 64 kB": Image(height=256, width=256, step=256, encoding="mono8", data=bytes(65_536)),
+        "Image 128 kB": Image(height=256, width=512, step=512, encoding="mono8", data=bytes(131_072)),
+        "Image 256 kB": Image(height=512, width=512, step=512, encoding="mono8", data=bytes(262_144)),
         "Image 0.9 MB": Image(height=480, width=640, step=1920, encoding="rgb8", data=bytes(921_600)),
         "Image 6.2 MB": Image(height=1080, width=1920, step=5760, encoding="rgb8", data=bytes(6_220_800)),
     }
@@ -85,10 +93,19 @@ def _topic(name: str) -> str:
 
 def echo() -> None:
     """Answer everything, until the end of the input."""
+    answer()
+    print("ready", flush=True)
+    sys.stdin.read()
+    os._exit(0)  # an orderly end is not worth the time
+
+
+def answer() -> None:
+    """Answer everything, in another thread."""
     import threading
 
     import rclpy
     from rclpy.action import ActionServer
+    from rclpy.executors import SingleThreadedExecutor
     from rclpy.qos import HistoryPolicy, QoSProfile
     from std_msgs.msg import Int64
     from std_srvs.srv import SetBool
@@ -118,10 +135,9 @@ def echo() -> None:
             done.publish(Int64(data=time.monotonic_ns()))
 
     kept.append(node.create_subscription(Int64, "burst", count, everything))
-    threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
-    print("ready", flush=True)
-    sys.stdin.read()
-    os._exit(0)  # an orderly end is not worth the time
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    threading.Thread(target=executor.spin, daemon=True).start()
 
 
 class Asking:
@@ -136,7 +152,8 @@ class Asking:
         from std_srvs.srv import SetBool
         from test_msgs.action import Fibonacci
 
-        rclpy.init()
+        if not rclpy.ok():
+            rclpy.init()
         self.node = rclpy.create_node("asking")
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
@@ -249,9 +266,9 @@ def ask() -> None:
 
 
 class Peer:
-    """Two processes with one implementation, stopped while it is not their turn."""
+    """Processes with one implementation, stopped while it is not their turn. The last one measures."""
 
-    def __init__(self, environment: dict[str, str]) -> None:
+    def __init__(self, environment: dict[str, str], *roles: str) -> None:
         self._processes = [
             subprocess.Popen(
                 [sys.executable, __file__, role],
@@ -260,7 +277,7 @@ class Peer:
                 stdout=subprocess.PIPE,
                 text=True,
             )
-            for role in ("--echo", "--ask")
+            for role in roles or ("--echo", "--ask")
         ]
         self._read()
         self._signal(signal.SIGSTOP)
@@ -268,7 +285,7 @@ class Peer:
     def measure(self, name: str, count: int = 0) -> list[float]:
         """Request figures."""
         self._signal(signal.SIGCONT)
-        asking = self._processes[1]
+        asking = self._processes[-1]
         assert asking.stdin is not None
         asking.stdin.write(json.dumps([name, count]) + "\n")
         asking.stdin.flush()
@@ -283,7 +300,7 @@ class Peer:
             process.wait()
 
     def _read(self) -> list[float]:
-        asking = self._processes[1]
+        asking = self._processes[-1]
         assert asking.stdout is not None
         line = asking.stdout.readline()
         if not line:
@@ -300,7 +317,8 @@ def _environments(folder: Path) -> list[dict[str, str]]:
     """Ours, and if there is a real rclpy, its defaults and its tuned profile; each in a domain of its own."""
     base = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "ROS_"))}
     base |= {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "OPENBLAS_NUM_THREADS": "1"}
-    found = [base | {"PYTHONPATH": os.pathsep.join(map(str, UNDERLAY))}]
+    # Who is stopped for longer than Zenoh's lease is taken for dead, and loses what comes then.
+    found = [base | {"PYTHONPATH": os.pathsep.join(map(str, UNDERLAY)), "ZENOH_CONFIG_OVERRIDE": _PATIENCE}]
     if importlib.util.find_spec("rclpy"):
         profile = folder / "profile.xml"
         profile.write_text(_PROFILE)
@@ -333,17 +351,34 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--echo", action="store_true", help=argparse.SUPPRESS)
     parser.add_argument("--ask", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--alone", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--only-memory", action="store_true", help="without rclpy")
     options = parser.parse_args()
-    if options.echo or options.ask:
+    if options.alone:
+        answer()
+    if options.echo or options.ask or options.alone:
         (echo if options.echo else ask)()
         return
     with tempfile.TemporaryDirectory() as folder:
-        peers = [Peer(environment) for environment in _environments(Path(folder))]
-        try:
-            show(peers, options.rounds)
-        finally:
-            for peer in peers:
-                peer.end()
+        environments = _environments(Path(folder))
+        if not options.only_memory:
+            with _running([Peer(environment) for environment in environments]) as peers:
+                show(peers, options.rounds)
+        ours = environments[0]
+        sockets = ours | {"ZENOH_SHM_ALLOC_SIZE": "0", "ROS_DOMAIN_ID": str(int(ours["ROS_DOMAIN_ID"]) + 3)}
+        shared = ours | {"ZENOH_SHM_MESSAGE_SIZE_THRESHOLD": "1"}
+        alone = ours | {"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}
+        with _running([Peer(sockets), Peer(shared), Peer(alone, "--alone")]) as peers:
+            show_memory(peers, options.rounds)
+
+
+@contextmanager
+def _running(peers: list[Peer]) -> Iterator[list[Peer]]:
+    try:
+        yield peers
+    finally:
+        for peer in peers:
+            peer.end()
 
 
 def show(peers: list[Peer], rounds: int) -> None:
@@ -365,6 +400,26 @@ def show(peers: list[Peer], rounds: int) -> None:
         found = _in_turns(peers, STARTS if name == "seen" else min(rounds, 3), name)
         figures = [each[0] for each in found]
         print(_row(label, unit, figures, asked_ratio, best), flush=True)
+
+
+def show_memory(peers: list[Peer], rounds: int) -> None:
+    """Print what shared memory is good for, and what it costs: sockets, shared memory, and one process."""
+    before = [peer.measure("memory")[0] for peer in peers]
+    print()
+    print("| there and back, p50 [us] | sockets | shared memory | ratio |")
+    print("|---|---|---|---|")
+    for name in SIZES:
+        sockets, shared = (each[0] for each in _in_turns(peers[:2], rounds, name, 40))
+        print(f"| {name} | {sockets:,.0f} | {shared:,.0f} | {shared / sockets:.2f} |", flush=True)
+    for name in SIZES:
+        peers[2].measure(name, 40)
+    after = [peer.measure("memory")[0] for peer in peers]
+    print()
+    print("| resident memory [MB] | one process | sockets | shared memory | more, at most | asked |")
+    print("|---|---|---|---|---|---|")
+    for what, (sockets, shared, alone) in (("no message yet", before), ("after these messages", after)):
+        more = max(sockets, shared) - alone
+        print(f"| {what} | {alone:.0f} | {sockets:.0f} | {shared:.0f} | {more:.0f} | <= 20 |", flush=True)
 
 
 if __name__ == "__main__":

@@ -166,6 +166,7 @@ def test_every_public_name_and_signature_is_there() -> None:
     assert not [fault for each in result.values() for fault in each.faults]
 
 
+@pytest.mark.slow
 @needs_the_real_one
 def test_there_is_no_public_name_that_upstream_lacks() -> None:
     """Code for ours works on the real one: rclpy has no names that upstream lacks, and accepts no more calls."""
@@ -187,6 +188,7 @@ def test_there_is_no_public_name_that_upstream_lacks() -> None:
     assert not [fault for fault in faults if not any(each in fault for each in known)]
 
 
+@pytest.mark.slow
 @needs_the_real_one
 def test_the_same_modules_can_be_reached_after_each_import() -> None:
     """`import rclpy; rclpy.qos` fails or works on both, and the same holds after any other import line."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 import threading
+from types import SimpleNamespace
+from typing import Any
 
 import ifgen.dynamic
 import rclpy
@@ -14,6 +16,29 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 OLD = "float64 speed 0.1\nstring name\nuint8 FAST=1\ngeometry_msgs/Point[<=2] way\n"
 NEW = "string name\nfloat64 speed 0.1\n"
 LATCHED = QoSProfile(depth=5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Slow:
+    """A node whose middleware knows at first only that somebody is on a topic, as DDS on a busy machine."""
+
+    def __init__(self, node: rclpy.node.Node) -> None:
+        self.context, self._node, self._looks = node.context, node, 0
+
+    def get_publishers_info_by_topic(self, topic: str) -> list[Any]:
+        """The endpoints, of unknown nodes at the first two looks."""
+        self._looks += 1
+        found = self._node.get_publishers_info_by_topic(topic)
+        if self._looks > 2:
+            return found
+        hidden = {"node_name": "_NODE_NAME_UNKNOWN_", "node_namespace": "_NODE_NAMESPACE_UNKNOWN_"}
+        return [
+            SimpleNamespace(topic_type=each.topic_type, topic_type_hash=each.topic_type_hash, **hidden)
+            for each in found
+        ]
+
+    def get_subscriptions_info_by_topic(self, _: str) -> list[Any]:
+        """Nobody."""
+        return []
 
 
 def main() -> None:
@@ -46,6 +71,7 @@ def main() -> None:
                 ifgen.dynamic.describe(listener, topic, **options)
             except ifgen.dynamic.DescribeError as error:
                 print(error)
+        print(ifgen.dynamic.describe(Slow(listener), "/far/move").node)
         refuse(listener)
         serve(talker, listener)
     finally:

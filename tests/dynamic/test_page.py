@@ -19,7 +19,7 @@ def ifgen(folder: Path, *arguments: str) -> str:
 
 
 def test_the_examples_run(tmp_path: Path) -> None:
-    topic, described, text = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    topic, service, described, text = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
     (tmp_path / "Point.json").write_text(ifgen(tmp_path, "show", "--json", "geometry_msgs/msg/Point"))
     (tmp_path / "described.py").write_text(described)
     (tmp_path / "text.py").write_text(text)
@@ -28,6 +28,12 @@ def test_the_examples_run(tmp_path: Path) -> None:
         "import rclpy\nfrom nav_msgs.msg import Odometry\nrclpy.init()\nnode = rclpy.create_node('wheels')\n"
         "odometry = node.create_publisher(Odometry, '/odometry', 10)\n"
         "node.create_timer(0.1, lambda: odometry.publish(Odometry(child_frame_id='base')))\nrclpy.spin(node)\n"
+    )
+    (tmp_path / "service.py").write_text(service)
+    (tmp_path / "add.py").write_text(
+        "import rclpy\nfrom example_interfaces.srv import AddTwoInts\nrclpy.init()\n"
+        "node = rclpy.create_node('adder')\ndef add(asked, answer):\n    answer.sum = asked.a + asked.b\n"
+        "    return answer\nnode.create_service(AddTwoInts, '/add', add)\nrclpy.spin(node)\n"
     )
     run = ("run", "--transport", "local")
     hash_ = ifgen(tmp_path, "hash", "geometry_msgs/msg/Point").split()[1]
@@ -39,3 +45,6 @@ def test_the_examples_run(tmp_path: Path) -> None:
     first, second, *_ = ifgen(tmp_path, *run, "odometry.py", ":", "topic.py").splitlines()
     assert re.fullmatch(r"nav_msgs/msg/Odometry RIHS01_\w{64} from /wheels", first)
     assert "child_frame_id='base'" in second
+    assert ifgen(tmp_path, *run, "add.py", ":", "service.py").splitlines()[0] == (
+        "example_interfaces.srv.AddTwoInts_Response(sum=3)"
+    )

@@ -8,13 +8,26 @@ from __future__ import annotations
 
 import itertools
 import random
+import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rmw_local.qos import TRANSIENT_LOCAL
-from rmw_local.transports.seam import Entity, OnEntity, OnReply, OnRequest, OnSample
+from rmw_local.transports.seam import (
+    Ask,
+    Audience,
+    Entity,
+    OnEntity,
+    OnOver,
+    OnQuestion,
+    OnReceipts,
+    OnReply,
+    OnRequest,
+    OnSample,
+    Receipt,
+)
 
 Message = tuple[bytes, int, int]  # data, number, stamp
 
@@ -102,10 +115,23 @@ class RecordingTransport:
             presence.close()
         self.network.members.pop(self.name, None)
 
+    def settle(self) -> None:
+        pass
+
+    def acknowledge(self, on_receipts: OnReceipts) -> None:
+        self.on_receipts = on_receipts
+
+    def offer(self, on_question: OnQuestion) -> None:
+        self.on_question = on_question
+
+    def survey(self, patience: float) -> Callable[[], Iterable[bytes]]:
+        answers = [other.on_question() for other in self.network.others(self)]
+        return lambda: [answers.pop() for _ in tuple(answers)]
+
     def announce(self, node: Entity) -> Presence:
         return self._present(Presence(self, node))
 
-    def publish(self, publisher: Entity) -> Publication:
+    def publish(self, publisher: Entity, audience: Audience) -> Publication:
         return self._present(Publication(self, publisher))
 
     def subscribe(self, subscription: Entity, on_sample: OnSample) -> Subscription:
@@ -114,12 +140,17 @@ class RecordingTransport:
             presence.catch_up_on(other)
         return presence
 
-    def ask(self, client: Entity, on_reply: OnReply) -> Asking:
-        return self._present(Asking(self, client, on_reply))
+    def ask(self, client: Entity, on_reply: OnReply, on_over: OnOver) -> Asking:
+        return self._present(Asking(self, client, on_reply, on_over))
+
+    def ask_also(self, client: Entity, gid: bytes, on_reply: OnReply, on_over: OnOver) -> Ask:
+        asking = Asking(self, client, on_reply, on_over)
+        asking.gid = gid
+        return asking.ask
 
     def inquire(self, server: Entity, data: bytes, patience: float) -> Callable[[], list[bytes]]:
         answers: list[bytes] = []
-        asking = Asking(self, server, lambda answer, *_: answers.append(answer))
+        asking = Asking(self, server, lambda answer, *_: answers.append(answer), lambda *_: None)
         asking.gid = f"?{next(self._gids)}".encode().ljust(16, b"\0")
         asking.ask(data, 1, 0)
         return lambda: [answers.pop(0) for _ in range(len(answers))]
@@ -134,6 +165,8 @@ class RecordingTransport:
     def lose_sight_of(self, other: RecordingTransport) -> None:
         for presence in other.entities.values():
             self.on_entity(presence.entity, False)
+            if isinstance(presence, Serving):
+                presence.give_up(self)
 
     def catch_up_on(self, other: RecordingTransport) -> None:
         for presence in list(self.entities.values()):
@@ -186,6 +219,19 @@ class Publication(Presence):
         for subscription in self.owner.reached(Subscription, self):
             subscription.receive(self, (data, number, stamp))
 
+    def receipts(self, peer: str, patience: float) -> list[Receipt] | None:
+        """What a process has now; nothing while something is on its way, as if the answer waited behind it."""
+        reached = {other.name: other for other in self.owner.network.others(self.owner)}
+        if peer not in reached:
+            return None
+        if self.owner.network.holds:
+            time.sleep(patience)
+            return []
+        return reached[peer].on_receipts(self.gid)
+
+    def watch(self, on_listeners: Callable[[bool], None]) -> None:
+        pass  # everybody here is announced
+
     def assert_alive(self) -> None:
         for other in self.owner.network.others(self.owner):
             other.on_alive(self.gid)
@@ -217,14 +263,25 @@ class Subscription(Presence):
 
 
 class Asking(Presence):
-    def __init__(self, owner: RecordingTransport, entity: Entity, on_reply: OnReply) -> None:
+    def __init__(self, owner: RecordingTransport, entity: Entity, on_reply: OnReply, on_over: OnOver) -> None:
         super().__init__(owner, entity)
         self.on_reply = on_reply
+        self._on_over = on_over
+        self._asked: dict[int, set[bytes]] = {}  # the servers that may yet answer, by request
 
-    def ask(self, data: bytes, number: int, stamp: int) -> None:
+    def ask(self, data: bytes, number: int, stamp: int, servers: Sequence[tuple[str, bytes]] = ()) -> None:
         self.owner.network.log.append((self.owner.name, "ask", self.entity.name))
-        for server in self.owner.reached(Serving, self):
+        servers = self.owner.reached(Serving, self)
+        self._asked[number] = {server.gid for server in servers}
+        for server in servers:
             self.owner.network.send(lambda server=server: server.receive(self, data, number, stamp))
+
+    def end(self, number: int, server: bytes) -> None:
+        """Note that a server will not answer any more, or has done so."""
+        asked = self._asked.get(number, set())
+        asked.discard(server)
+        if not asked and self._asked.pop(number, None) is not None:
+            self._on_over(number, "")
 
 
 class Serving(Presence):
@@ -243,5 +300,21 @@ class Serving(Presence):
         if asking is None:
             return False
         self.owner.network.log.append((self.owner.name, "reply", self.entity.name))
-        self.owner.network.send(lambda: asking.on_reply(data, number, stamp))
+        self.owner.network.send(lambda: (asking.on_reply(data, number, stamp), asking.end(number, self.gid)))
         return True
+
+    def drop(self, number: int, client: bytes) -> None:
+        asking = self._waiting.pop((client, number), None)
+        if asking is not None:
+            asking.end(number, self.gid)
+
+    def give_up(self, client: RecordingTransport | None = None) -> None:
+        """Leave requests unanswered: those of one process, or all."""
+        for (gid, number), asking in list(self._waiting.items()):
+            if client in {None, asking.owner}:
+                del self._waiting[gid, number]
+                asking.end(number, self.gid)
+
+    def close(self) -> None:
+        super().close()
+        self.give_up()

@@ -1,4 +1,4 @@
-"""A site for routers, with a domain and ports of its own."""
+"""Terminals in a domain of their own, and a site for routers with ports of its own."""
 
 from __future__ import annotations
 
@@ -10,6 +10,15 @@ import pytest
 from ifgen_pytest.domains import own_domain
 
 from tests.running.sites import Site
+from tests.running.terminals import Machine
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Iterator[Machine]:
+    with own_domain() as domain:
+        made = Machine(domain, tmp_path)
+        yield made
+        made.close()
 
 
 @pytest.fixture

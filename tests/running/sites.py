@@ -7,9 +7,7 @@ import os
 from pathlib import Path
 
 from tests.running.machines import Machine
-from tests.running.terminals import Command, Terminal
-
-PEER = str(Path(__file__).parent / "peers/peer.py")
+from tests.running.terminals import PEER, Command, Terminal
 
 
 class Site:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import queue
 import signal
 import subprocess
@@ -9,8 +10,10 @@ import sys
 import threading
 import time
 from collections.abc import Sequence
+from pathlib import Path
 
 LIMIT = 60.0  # [s]
+PEER = str(Path(__file__).parent / "peers/peer.py")
 
 
 class Command:
@@ -46,6 +49,13 @@ class Command:
             if line.startswith(beginning):
                 return line
 
+    def until_all(self, *beginnings: str) -> None:
+        """Wait for lines that begin so, in any order."""
+        left = set(beginnings)
+        while left:
+            line = self.until("")
+            left = {beginning for beginning in left if not line.startswith(beginning)}
+
     def end(self) -> int:
         """Press Ctrl-C."""
         self.process.send_signal(signal.SIGINT)
@@ -70,3 +80,38 @@ class Terminal(Command):
 
     def __init__(self, environment: dict[str, str], *arguments: str, before: Sequence[str] = ()) -> None:
         super().__init__(environment, "run", "--transport", "local", *arguments, before=before)
+
+
+class Machine:
+    """Terminals of one user, in a domain of their own."""
+
+    def __init__(self, domain: int, folder: Path) -> None:
+        self.folder = Path(f"/tmp/ifgen-{os.getuid()}/{domain}")
+        self.environment = {
+            **os.environ,
+            "ROS_DOMAIN_ID": str(domain),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            "ROS_LOG_DIR": str(folder),
+            "PYTHONUNBUFFERED": "1",
+        }
+        self.terminals: list[Terminal] = []
+        self._clean()  # other tests kill programs, and had this domain before
+
+    def run(
+        self, *arguments: str, program: str = PEER, before: Sequence[str] = (), **environment: str
+    ) -> Terminal:
+        """Open a terminal, and run a program there."""
+        terminal = Terminal(self.environment | environment, program, *arguments, before=before)
+        self.terminals.append(terminal)
+        return terminal
+
+    def close(self) -> None:
+        for terminal in self.terminals:
+            terminal.process.send_signal(signal.SIGCONT)
+            terminal.process.kill()
+            terminal.process.wait()
+        self._clean()
+
+    def _clean(self) -> None:
+        for left in self.folder.glob("*"):
+            left.unlink()

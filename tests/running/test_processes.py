@@ -8,56 +8,16 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from ifgen_pytest.domains import own_domain
 
-from tests.running.terminals import Terminal
+from tests.running.terminals import PEER, Machine
 
 pytest.importorskip("zenoh")
 if not hasattr(os, "getuid"):
     pytest.skip("processes find each other by sockets that this system lacks", allow_module_level=True)
-
-PEER = str(Path(__file__).parent / "peers/peer.py")
-
-
-class Machine:
-    """Terminals in one domain."""
-
-    def __init__(self, domain: int, folder: Path) -> None:
-        self.folder = Path(f"/tmp/ifgen-{os.getuid()}/{domain}")
-        self.environment = {
-            **os.environ,
-            "ROS_DOMAIN_ID": str(domain),
-            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-            "ROS_LOG_DIR": str(folder),
-            "PYTHONUNBUFFERED": "1",
-        }
-        self.terminals: list[Terminal] = []
-
-    def run(self, *arguments: str, program: str = PEER, **environment: str) -> Terminal:
-        """Open a terminal, and run a program there."""
-        terminal = Terminal(self.environment | environment, program, *arguments)
-        self.terminals.append(terminal)
-        return terminal
-
-    def close(self) -> None:
-        for terminal in self.terminals:
-            terminal.process.send_signal(signal.SIGCONT)
-            terminal.process.kill()
-            terminal.process.wait()
-        for left in self.folder.glob("*"):
-            left.unlink()
-
-
-@pytest.fixture
-def machine(tmp_path: Path) -> Iterator[Machine]:
-    with own_domain() as domain:
-        made = Machine(domain, tmp_path)
-        yield made
-        made.close()
 
 
 @pytest.mark.parametrize("first", ["talk", "listen"])
@@ -124,6 +84,8 @@ def test_who_is_off_or_elsewhere_is_not_found(machine: Machine) -> None:
     here.until("nodes here")
     off = machine.run("off", "both", ROS_AUTOMATIC_DISCOVERY_RANGE="OFF")
     off.until("heard 20")
+    made = [path.name for path in machine.folder.iterdir()]
+    assert not any(name.startswith(f"{off.process.pid}-") for name in made)
     with own_domain() as domain:
         elsewhere = machine.run("elsewhere", "both", ROS_DOMAIN_ID=str(domain))
         elsewhere.until("heard 20")
@@ -144,6 +106,21 @@ def test_without_zenoh_one_line_says_what_to_install(machine: Machine, tmp_path:
     assert lonely.end() == content.end() == 0
     assert sum(line.startswith("rmw_local") for line in lonely.lines) == 1
     assert not any(line.startswith("rmw_local") for line in content.lines)
+
+
+@pytest.mark.slow
+def test_where_there_are_no_unix_sockets_one_line_says_what_to_do(machine: Machine, tmp_path: Path) -> None:
+    program = tmp_path / "without.py"
+    program.write_text(
+        "import _socket, runpy, sys\ndel _socket.AF_UNIX\nsys.argv = sys.argv[1:]\n"
+        "runpy.run_path(sys.argv[0], run_name='__main__')\n"
+    )
+    lonely = machine.run(PEER, "lonely", "talk", program=str(program))
+    line = lonely.until("rmw_local")
+    assert "/count" in line
+    assert "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET" in line
+    assert lonely.end() == 0
+    assert sum(line.startswith("rmw_local") for line in lonely.lines) == 1
 
 
 @pytest.mark.slow

@@ -34,7 +34,8 @@ def test_a_router_may_come_late_and_come_back(site: Site, endpoints: list[str]) 
     talker.until("nodes t")
     first = site.router("--listen", endpoints[0])
     listener = site.peer("l", "listen", endpoints[0])
-    listener.until("heard")
+    talker.until("nodes l t")
+    listener.until_all("heard", "nodes l t")  # a message may come before the node
     first.process.kill()
     for each, name in ((talker, "t"), (listener, "l")):
         each.until(f"nodes {name} zenoh")

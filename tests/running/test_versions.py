@@ -7,11 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from tests.running.test_processes import Machine, Terminal
-from tests.running.test_processes import machine as machine_of_a_test
+from tests.running.terminals import Machine, Terminal
 
 PROGRAM = str(Path(__file__).parent / "peers/versions.py")
-machine = machine_of_a_test
 
 
 @pytest.fixture

@@ -14,8 +14,19 @@ beside the generated class too. Errors are InputError, with one sentence for eac
 """
 
 from ifgen.diagnostics import InputError
+from ifgen.dynamic.asking import DescribeError, TypeDescription
+from ifgen.dynamic.calls import describe_action, describe_service
 from ifgen.dynamic.classes import class_of
-from ifgen.dynamic.describing import DescribeError, TypeDescription, describe
+from ifgen.dynamic.describing import describe
 from ifgen.dynamic.texts import class_from_text
 
-__all__ = ["DescribeError", "InputError", "TypeDescription", "class_from_text", "class_of", "describe"]
+__all__ = [
+    "DescribeError",
+    "InputError",
+    "TypeDescription",
+    "class_from_text",
+    "class_of",
+    "describe",
+    "describe_action",
+    "describe_service",
+]

@@ -7,7 +7,7 @@ from typing import Any
 from ifgen.definition.described.reading import read
 from ifgen.diagnostics import InputError
 from ifgen.dynamic import texts
-from ifgen.dynamic.describing import TypeDescription
+from ifgen.dynamic.asking import TypeDescription
 from ifgen.dynamic.documents import document_from
 from ifgen.dynamic.making import make
 

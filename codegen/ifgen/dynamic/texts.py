@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from ifgen.definition.described.texts import read_sources, read_texts
+from ifgen.dynamic.derived import whole_of
 from ifgen.dynamic.making import make
 
-_SEPARATOR: Final = re.compile(r"^={80}\nMSG: (\S+)\n", re.MULTILINE)
+_SEPARATOR: Final = re.compile(r"^={80}\r?\n(MSG|IDL|SRV|ACTION): (\S+)[ \t]*\r?\n", re.MULTILINE)
 """The lines between definitions that belong together, in bags and in the schemas of MCAP."""
 
 
@@ -26,16 +27,30 @@ def class_from_text(
 
     `type_name` is `pkg/msg/Name`; its middle says what the text is. `others` are the texts of other types by
     their names. They can follow the text as well, as in bags: each after a line of 80 `=` and a line
-    `MSG: pkg/Name`. Types that have no text are looked for where `ifgen generate` does it, first in the
-    folders `include`.
+    `MSG: pkg/Name`, or `IDL: pkg/msg/Name`, which the type's own text may have, too. Types that have no text
+    are looked for where `ifgen generate` does it, first in the folders `include`. A message that belongs to a
+    service or an action, such as `pkg/srv/Name_Event`, is defined by the text of that (`SRV: pkg/srv/Name`),
+    or by those of its messages.
 
     The same definition always returns the same class. Raises InputError with all mistakes.
     """
-    main, *more = _SEPARATOR.split(text) if _SEPARATOR.search(text) else [text]
-    sources = [(type_name, "idl" if idl else "", main)]
-    sources += ((_full(name), "", body) for name, body in zip(more[::2], more[1::2], strict=True))
+    sources = sources_in(type_name, text, idl=idl)
     sources += ((name, "", body) for name, body in (others or {}).items())
+    if (whole := whole_of(type_name, sources)) is not None:
+        return whole.part_of(make(*read_texts(whole.type_name, whole.sources, include)))
     return make(*read_texts(type_name, sources, include))
+
+
+def sources_in(type_name: str, text: str, *, idl: bool = False) -> list[tuple[str, str, str]]:
+    """The (type name, encoding, text) of a type, and of those whose definitions follow in its text."""
+    main, *more = _SEPARATOR.split(text)
+    sources = [
+        (_full(name), "idl" if kind == "IDL" else "", body)
+        for kind, name, body in zip(more[::3], more[1::3], more[2::3], strict=True)
+    ]
+    if main.strip() or not any(name == type_name for name, _, _ in sources):
+        sources.insert(0, (type_name, "idl" if idl else "", main))
+    return sources
 
 
 def class_from_sources(type_name: str, sources: Iterable[tuple[str, str, str]]) -> type[Any] | None:

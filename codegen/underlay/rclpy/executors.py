@@ -19,8 +19,9 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 from rmw_local import timing
 
 from rclpy._executor.callback_runner import CallbackRunner
+from rclpy._executor.measuring import Meter
 from rclpy._executor.ready_queue import ReadyQueue
-from rclpy._executor.tasks import TaskList, Work, run, run_in_pool, wake_when_done
+from rclpy._executor.tasks import TaskList, Work, wake_when_done
 from rclpy._executor.watch import Watch
 from rclpy._executor.work_finder import Condition, End, WorkFinder, never
 from rclpy.context import Context
@@ -107,6 +108,10 @@ class Executor(AbstractContextManager["Executor"]):
         self._tasks = TaskList()
         self._finder = WorkFinder(self._context, self._queue, self._tasks, self._nodes)
         self._runner = CallbackRunner(self._queue, self._tasks)
+        self._meter = Meter(self)
+        domain = self._context.handle.participant.domain
+        with domain.lock:
+            domain.meters.add(self._meter)
         self._guard: GuardCondition | None = GuardCondition(None, None, context=self._context)
         self._guard.handle.add_listener(self._queue.poke)
         self._sigint_gc = SignalHandlerGuardCondition(self._context)
@@ -337,15 +342,15 @@ class SingleThreadedExecutor(Executor):
             else:
                 self._runner.run(item, self)
             return
-        run(item[0])
+        self._runner.run_task(item)
 
     def _spin_once_by_handler(self, timeout_sec: Timeout, wait_condition: Condition) -> None:
         """Ask `wait_for_ready_callbacks`, which a derived class or a test has put its own in place of."""
         try:
-            handler, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
+            work = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ShutdownException, TimeoutException, ConditionReachedException):
             return
-        run(handler)
+        self._runner.run_task(work)
 
 
 class MultiThreadedExecutor(Executor):
@@ -373,12 +378,12 @@ class MultiThreadedExecutor(Executor):
 
     def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
         try:
-            task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
+            work = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
             return
-        self._executor.submit(run_in_pool, task)
-        if task not in self._futures:
-            self._futures.append(task)
+        self._executor.submit(self._runner.run_in_pool, work)
+        if work[0] not in self._futures:
+            self._futures.append(work[0])
         for future in self._futures[:]:
             if future.done():
                 self._futures.remove(future)

@@ -106,6 +106,11 @@ class Future(Generic[T]):
             self._state = _FINISHED
         self._call_back()
 
+    def _fail(self, exception: BaseException) -> None:
+        """Complete it with an exception that is not printed, whoever waits."""
+        self.set_exception(exception)
+        self._exception_fetched = True
+
     def add_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
         """Call `callback(future)` when it is done or given up; at once if that has been."""
         with self._lock:

@@ -1,35 +1,28 @@
-"""The graph: domains, participants (one for each context), nodes, and the topics and services they meet on.
-
-One lock a domain guards joining and leaving; publishing never takes it. Lock order: domain, then durable
-writer, then liveliness, then status. Listeners run after the domain's lock is released.
-"""
+"""The graph: participants (one for each context), nodes, and the endpoints that they make in a domain."""
 
 from __future__ import annotations
 
 import itertools
 import os
-import threading
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, TypeAlias
 
 from rmw_local import observer, timing
 from rmw_local.allocator import keep_freed_memory
+from rmw_local.domain import Domain, endpoints
 from rmw_local.qos import INFINITE, TRANSIENT_LOCAL, resolve_offered, resolve_requested
 from rmw_local.reader import LifespanReader, Reader
-from rmw_local.ready import ReadySource
-from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceName, ServiceQos, ServiceServer
-from rmw_local.topic import Topic
+from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceQos, ServiceServer
 from rmw_local.writer import DurableWriter, Writer
 
 if TYPE_CHECKING:
     from ifgen_runtime.mismatch.told import Told
 
+    from rmw_local.lockstep.side import Side
     from rmw_local.message import MessageType, ServiceType
     from rmw_local.qos import QosProfile
-    from rmw_local.transports.link import Link
-    from rmw_local.transports.reach import Reach
+    from rmw_local.ready import ReadySource
 
 Entity: TypeAlias = "GraphNode | Writer | Reader | ServiceEndpoint"
 
@@ -48,82 +41,24 @@ class TypeConflictError(Exception):
         self.type_name = type_name
 
 
-class GraphSource(ReadySource):
-    """Notifies whenever an endpoint or a node comes or goes in a domain."""
-
-
-class Domain:
-    """Everything that can hear each other."""
-
-    _domains: ClassVar[dict[int, Domain]] = {}
-    _creation = threading.Lock()
-
-    def __init__(self, number: int) -> None:
-        self.number = number
-        self.lock = threading.Lock()
-        self.nodes: list[GraphNode] = []
-        self.topics: dict[str, Topic] = {}
-        self.services: dict[str, ServiceName] = {}
-        self.changed = GraphSource()
-        self.reach: Reach | None = None  # the way to other processes, once there is a node
-        self.link: Link | None = None  # while there are other processes
-        self._forsaken: deque[Callable[[], None]] = deque()
-
-    @classmethod
-    def numbered(cls, number: int) -> Domain:
-        """Return the domain with this id."""
-        with cls._creation:
-            return cls._domains.setdefault(number, cls(number))
-
-    def forsake(self, close: Callable[[], None]) -> None:
-        """Have something closed that was collected as garbage: later, since a collector may hold any lock."""
-        self._forsaken.append(close)
-
-    def bury(self) -> None:
-        """Close what was forsaken. Called before looking at the graph or changing it, with no lock held."""
-        while self._forsaken:
-            try:
-                close = self._forsaken.popleft()
-            except IndexError:  # another thread was faster
-                return
-            close()
-
-    def reach_out(self) -> None:
-        """Look for other processes, and let them find this one."""
-        if self.reach is None:
-            from rmw_local.transports.reach import Reach  # late: not where everything stays in the process
-
-            with self._creation:
-                begins = self.reach is None
-                self.reach = self.reach or Reach(self)
-            if begins:
-                self.reach.begin()
-
-    def topic(self, name: str) -> Topic:
-        """Return the topic, a new one if it has no endpoint yet. Called with the lock held."""
-        topic = self.topics.get(name)
-        if topic is None:
-            topic = self.topics[name] = Topic(name)
-        return topic
-
-    def service(self, name: str) -> ServiceName:
-        """Return the service, a new one if it has no endpoint yet. Called with the lock held."""
-        service = self.services.get(name)
-        if service is None:
-            service = self.services[name] = ServiceName(name)
-        return service
-
-
 class Participant:
     """One context's presence in a domain."""
 
     _prefixes = itertools.count(1)
+    side: Side | None = None  # this process's side of a lockstep run
+    writers: tuple[type[Writer], type[Writer]] = Writer, DurableWriter
 
     def __init__(self, domain_id: int) -> None:
         keep_freed_memory()
         self.domain = Domain.numbered(domain_id)
-        self.keeps_to_itself = range_is_off() or not isinstance(timing.driver, timing.SystemDriver)
+        self._is_alone = range_is_off()
+        self.keeps_to_itself = self._is_alone or not isinstance(timing.driver, timing.SystemDriver)
         """Whether nobody outside this process is to see it. A virtual clock is nobody else's."""
+        if timing.driver.side is not None:
+            from rmw_local.lockstep.held import HeldDurableWriter, HeldWriter  # late: few programs need it
+
+            self.side, self.writers = timing.driver.side, (HeldWriter, HeldDurableWriter)
+            self.keeps_to_itself = False
         self.has_ended = False  # whether its context was shut down; then nothing is said any more
         # 16-byte gids as DDS makes them: vendor, process, participant, entity
         process = os.getpid() & 0xFFFFFFFF
@@ -161,10 +96,14 @@ class Participant:
     def create_node(self, name: str, namespace: str, enclave: str = "/") -> GraphNode:
         """Announce a node; several may have one name."""
         node = GraphNode(self, name, namespace, enclave)
-        if not self.keeps_to_itself:
+        if self.side is not None:
+            self.side.join(self.domain)
+        elif not self.keeps_to_itself:
             self.domain.reach_out()
+        elif not self._is_alone:
+            self.domain.stay_apart()
         with self.domain.lock:
-            self.domain.nodes.append(node)
+            self.domain.nodes[node] = None
         node.announce(node, [])
         return node
 
@@ -211,7 +150,7 @@ class GraphNode:
             self.participant.claim(topic, message_type.name)
             place = domain.topic(topic)
             resolved = resolve_offered(qos, [reader.qos for reader in place.readers])
-            make = DurableWriter if resolved.durability == TRANSIENT_LOCAL else Writer
+            make = self.participant.writers[resolved.durability == TRANSIENT_LOCAL]
             writer = make(self, message_type, topic, resolved)
             changed = place.add_writer(writer)
         self.announce(writer, changed)
@@ -276,12 +215,12 @@ class GraphNode:
                 return
             endpoint.closed = True
             service = domain.services[endpoint.name]
-            service.remove(endpoint)
+            changed = service.remove(endpoint)
             if service.is_empty():
                 del domain.services[endpoint.name]
             self.participant.release(request_topic(endpoint.name))
         _record_unread(endpoint.name, endpoint.unread)
-        self._renounce(endpoint, [])
+        self._renounce(endpoint, changed)
 
     def close(self) -> None:
         """Leave the graph; endpoints are closed on their own."""
@@ -289,7 +228,7 @@ class GraphNode:
             if self.closed:
                 return
             self.closed = True
-            self.participant.domain.nodes.remove(self)
+            del self.participant.domain.nodes[self]
         self._renounce(self, [])
 
     def _join_service(self, endpoint: ServiceEndpoint) -> None:
@@ -318,7 +257,7 @@ class GraphNode:
     def _tell_of_encounters(self, newcomer: Writer | Reader | ServiceEndpoint) -> None:
         if not newcomer.encounters:
             return
-        from rmw_local.telling import tell_of  # late: definitions hardly ever differ
+        from rmw_local.mismatch.telling import tell_of  # late: definitions hardly ever differ
 
         encounters, newcomer.encounters = newcomer.encounters, ()
         tell_of(each for each in encounters if not each.crosses_processes)
@@ -345,16 +284,6 @@ class GraphNode:
 def request_topic(service: str) -> str:
     """Return the name under which a service's requests travel, which no topic can have."""
     return f"rq{service}Request"
-
-
-def endpoints(domain: Domain) -> Iterator[Writer | Reader | ServiceEndpoint]:
-    """Iterate over all endpoints of a domain. Called with its lock held."""
-    for topic in domain.topics.values():
-        yield from topic.writers
-        yield from topic.readers
-    for service in domain.services.values():
-        yield from service.servers
-        yield from service.clients
 
 
 def _service_qos(qos: QosProfile) -> ServiceQos:

@@ -12,7 +12,7 @@ from ifgen_runtime.errors import DeserializationError as DecodeError
 from ifgen_runtime.errors import SerializationError, as_raised
 from ifgen_runtime.message import generated_class
 
-from rmw_local.drops import Drops
+from rmw_local.notices import Drops
 
 __all__ = [
     "DecodeError",

@@ -1,13 +1,15 @@
-"""Lines of the middleware for whoever reads a program's stderr."""
+"""Words of the middleware: lines for whoever reads a program's stderr, and the reasons of errors."""
 
 from __future__ import annotations
 
 import _thread
 import sys
+from collections.abc import Sequence
 
 from rmw_local import timing
 
 _SECOND = 1_000_000_000  # [ns]
+_PART_OF_ACTION = "/_action/"
 
 
 def say(text: str) -> None:
@@ -41,3 +43,27 @@ class Repeated:
             self._told = second
             count, self._untold = self._untold, 0
         say(self._text.format(count=count, s="" if count == 1 else "s", why=why))
+
+
+class Drops(Repeated):
+    """Counts the payloads of one type that could not be read; `type_name` is `pkg/kind/Name`."""
+
+    def __init__(self, type_name: str) -> None:
+        name = type_name.replace("/", "::")
+        super().__init__(
+            f"dropped {{count}} malformed message{{s}} of type {name} "
+            "(does a publisher have another definition of it?)"
+        )
+
+
+def no_response(service: str, nodes: Sequence[str], reason: str) -> str:
+    """Say why there will be no response, and what to do. Without a `reason`, the servers are gone."""
+    action, is_part, part = service.partition(_PART_OF_ACTION)
+    what = f"{part} of action '{action}'" if is_part else f"service '{service}'"
+    wait = "wait_for_server" if is_part else "wait_for_service"
+    where = " and ".join(sorted(set(nodes)))
+    gone = "was destroyed, has ended, or is not reached any more"
+    return (
+        f"{what}: no response will come from {where}: {reason or f'the server {gone}'}. "
+        f"Wait with `client.{wait}()`, then ask again."
+    )

@@ -9,12 +9,12 @@ from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
 from rmw_local.qos import INFINITE
 from rmw_local.ready import ReadySource
-from rmw_local.status import DeadlineStatus, LivelinessChangedStatus
+from rmw_local.status import DeadlineStatus, LivelinessChangedStatus, Status
 
 if TYPE_CHECKING:
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
-    from rmw_local.origin import Origin
+    from rmw_local.mismatch.origin import Origin
     from rmw_local.qos import QosProfile
 
 # One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages,
@@ -41,6 +41,9 @@ class Reader(ReadySource, Endpoint):
 
     role = "subscription"
     stands_in = False  # whether it is another one again, in another process, for a definition that it adapts
+    overwritten = 0
+    """The number of messages that newer ones replaced while it was measured."""
+    _is_measured = False
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         ReadySource.__init__(self)
@@ -48,9 +51,16 @@ class Reader(ReadySource, Endpoint):
         self._queue: deque[Sample] = deque(maxlen=qos.queue_length)
         self.takes_parcels = True
         self.liveliness_changed = LivelinessChangedStatus()
+        self.message_lost = Status()  # on the way from other processes
         self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
         self._observer = observer.current()
-        self._plain = self.deadline is None and self._observer is None
+        self.measure(is_wanted=False)
+
+    def measure(self, is_wanted: bool) -> None:
+        """Count what is overwritten from now on, or no longer."""
+        self._is_measured = is_wanted
+        self._is_watched = is_wanted or self._observer is not None
+        self._plain = self.deadline is None and not self._is_watched
 
     def is_ready(self) -> bool:
         """Whether a message waits."""
@@ -68,9 +78,15 @@ class Reader(ReadySource, Endpoint):
 
     def store(self, sample: Sample) -> None:
         """Queue a message; `announce` has to follow when the caller holds no lock any more."""
-        if self._observer is not None and self.unread == self.qos.queue_length:
-            self._observer.undelivered(self.topic, 1, "overwritten before it was read")
+        if self._is_watched and self.unread == self.qos.queue_length:
+            self._note_overwriting()
         self._queue.append(sample)
+
+    def _note_overwriting(self) -> None:
+        if self._observer is not None:
+            self._observer.undelivered(self.topic, 1, "overwritten before it was read")
+        if self._is_measured:
+            self.overwritten += 1
 
     def announce(self) -> None:
         """Notify the listeners that wait for messages."""

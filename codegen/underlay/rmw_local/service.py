@@ -12,15 +12,17 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rmw_local import observer, timing
+from rmw_local.endpoint import Ends
 from rmw_local.message import DecodeError, SerializationError, as_raised
+from rmw_local.notices import no_response
 from rmw_local.qos import mismatch
 from rmw_local.ready import ReadySource
 
 if TYPE_CHECKING:
-    from rmw_local.encounter import Encounter
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType, ServiceType
-    from rmw_local.origin import Origin
+    from rmw_local.mismatch.encounter import Encounter
+    from rmw_local.mismatch.origin import Origin
     from rmw_local.qos import QosProfile
 
 # A request or a response on its way: (CDR bytes, source stamp [ns, system time], the client's gid,
@@ -43,6 +45,8 @@ class ServiceEndpoint(ReadySource):
     role: ClassVar[str]
     is_remote: ClassVar[bool] = False
     """Whether it stands for one in another process."""
+    stands_in = False  # whether it is another one again, in another process, for a definition that it adapts
+    refuses = False  # whether it is in another process, where other definitions are refused
     encounters: tuple[Encounter, ...] = ()  # with other definitions, until they are told of
     sends: MessageType
     takes: MessageType
@@ -74,8 +78,8 @@ class ServiceEndpoint(ReadySource):
 
     def accept(self, letter: Letter) -> None:
         """Queue it and notify the listeners."""
-        if self._observer is not None and len(self._queue) == self._queue.maxlen:
-            self._observer.undelivered(self.name, 1, "overwritten before it was read")
+        if len(self._queue) == self._queue.maxlen:
+            self._overflow()
         self._queue.append(letter)
         for listener in self._listeners:
             listener()
@@ -99,6 +103,11 @@ class ServiceEndpoint(ReadySource):
             kind.drops.add()
             return None
 
+    def _overflow(self) -> None:
+        """Make room for one more."""
+        if self._observer is not None:
+            self._observer.undelivered(self.name, 1, "overwritten before it was read")
+
     @property
     def unread(self) -> int:
         """The number of waiting requests or responses."""
@@ -113,27 +122,106 @@ class ServiceClient(ServiceEndpoint):
     def __init__(self, node: GraphNode, service_type: ServiceType, name: str, qos: ServiceQos) -> None:
         super().__init__(node, service_type, name, qos)
         self.sends, self.takes = service_type.request, service_type.response
-        self.servers: tuple[Any, ...] = ()  # servers, or what stands for them (`rmw_local.passage`)
-        self.beyond: Callable[[Letter], object] | None = None  # takes requests to other processes
+        # By server, itself or what stands for it (`rmw_local.mismatch.passage`)
+        self.servers: dict[ServiceServer, Any] = {}
+        self._asked: dict[ServiceServer, Any] | None = {}  # a copy that nobody changes; None: to be made
+        # Takes requests to those of the servers that are in other processes.
+        self.beyond: Callable[[Letter, dict[ServiceServer, Any]], object] | None = None
         self._numbers = itertools.count(1)
+        # By number: the servers that were asked, and of how many definitions of those elsewhere not all have
+        # had their say.
+        self._unanswered: dict[int, tuple[dict[ServiceServer, Any], int]] = {}
+        self._failures: deque[tuple[int, str]] = deque()  # (number, reason), yet to be taken
+
+    def is_ready(self) -> bool:
+        """Whether a response or a failure waits."""
+        return bool(self._queue or self._failures)
 
     def send(self, request: Any) -> int:
         """Send a request to every matched server; return its number, from 1."""
         data = _serialized(self.sends, request)
         number = next(self._numbers)
         letter = (data, timing.time_ns(), self.gid, number)
-        servers = self.servers
-        far = False
-        for server in servers:
-            if server.is_remote:
-                far = True
-            else:
-                server.accept(letter)
-        if far and self.beyond is not None:
-            self.beyond(letter)  # once, for all of them
+        servers = self._asked
+        if servers is None:
+            servers = self._copy_servers()
+        if servers:
+            far = {server.kind.type_hash for server in servers if server.is_remote}
+            self._unanswered[number] = servers, len(far)
+            for server, end in servers.items():
+                if not server.is_remote:
+                    end.accept(letter)
+            if far and self.beyond is not None:
+                self.beyond(letter, servers)  # once, for all of them
         if self._observer is not None and not servers:
             self._observer.undelivered(self.name, 1, "requested while no service was matched")
         return number
+
+    def connect(self, server: ServiceServer, end: Any) -> None:
+        """Send to one more server, by way of `end`. The domain's lock is held, as for `disconnect`."""
+        self.servers[server] = end
+        self._asked = None
+
+    def disconnect(self, server: ServiceServer) -> None:
+        """Send to it no longer."""
+        if self.servers.pop(server, None) is not None:
+            self._asked = None
+
+    def _copy_servers(self) -> dict[ServiceServer, Any]:
+        with self.node.participant.domain.lock:
+            self._asked = servers = dict(self.servers)
+        return servers
+
+    def accept(self, letter: Letter) -> None:
+        """Queue a response."""
+        self._unanswered.pop(letter[3], None)
+        super().accept(letter)
+
+    def take_failure(self) -> tuple[int, str] | None:
+        """Remove and return the number of a request that nobody will answer, and the reason."""
+        return self._failures.popleft() if self._failures else None
+
+    def lose(self, server: ServiceServer) -> bool:
+        """Expect nothing of a server that is closed; returns whether requests failed. Domain's lock held."""
+        unanswered = list(self._unanswered.items())
+        asked = [number for number, (servers, _) in unanswered if server in servers]
+        failed = [number for number in asked if self._fail_if_all_are_gone(number)]
+        return bool(failed)
+
+    def give_up(self, number: int, reason: str) -> bool:
+        """Expect nothing more of one definition from other processes; the rest as for `lose`.
+
+        Without a reason, the request fails once the servers have left the graph, too. Who asks again at once
+        would otherwise ask those that are going.
+        """
+        asked = self._unanswered.get(number)
+        if asked is None:  # answered meanwhile
+            return False
+        servers, unfinished = asked
+        self._unanswered[number] = servers, unfinished - 1
+        return self._fail_if_all_are_gone(number, reason)
+
+    def expect_nothing(self) -> None:
+        """Forget all requests: their futures stay pending."""
+        self._unanswered.clear()
+
+    def expects(self, number: int) -> bool:
+        """Whether somebody may yet answer a request."""
+        return number in self._unanswered
+
+    def _fail_if_all_are_gone(self, number: int, reason: str = "") -> bool:
+        servers, unfinished = self._unanswered.get(number, ({}, 0))
+        is_over = unfinished <= 0
+        for each in servers:
+            # One elsewhere may have answered before it left: the transport says when nothing more will come.
+            is_gone = is_over and (each.closed or reason) if each.is_remote else each.closed
+            if not is_gone:
+                return False
+        if self._unanswered.pop(number, None) is None:
+            return False
+        nodes = [each.node.full_name for each in servers]
+        self._failures.append((number, no_response(self.name, nodes, reason)))
+        return True
 
 
 class ServiceServer(ServiceEndpoint):
@@ -144,9 +232,24 @@ class ServiceServer(ServiceEndpoint):
     def __init__(self, node: GraphNode, service_type: ServiceType, name: str, qos: ServiceQos) -> None:
         super().__init__(node, service_type, name, qos)
         self.sends, self.takes = service_type.response, service_type.request
-        self.clients: dict[bytes, Any] = {}  # clients, or what stands for them; replaced, never changed
+        self.clients: dict[bytes, Any] = {}  # by gid: clients, or what stands for them
         # Takes responses to other processes; False if the client is not there either.
         self.beyond: Callable[[Letter], bool] | None = None
+        # Says of requests from there that nobody will answer them.
+        self.drop: Callable[[Letter], None] = _keep_quiet
+
+    def read(self, letter: Letter) -> Any:
+        """The request in what was taken; None if it is malformed, which was counted."""
+        request = super().read(letter)
+        if request is None:
+            self.drop(letter)
+        return request
+
+    def _overflow(self) -> None:
+        super()._overflow()
+        oldest = self.take()
+        if oldest is not None:  # else somebody has taken it meanwhile
+            self.drop(oldest)
 
     def respond(self, client_gid: bytes, number: int, response: Any) -> None:
         """Send a response. If the client is gone, it is dropped."""
@@ -166,35 +269,42 @@ class ServiceName:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.clients: list[ServiceClient] = []
-        self.servers: list[ServiceServer] = []
+        self.clients: Ends[ServiceClient] = Ends()
+        self.servers: Ends[ServiceServer] = Ends()
 
     def add(self, endpoint: ServiceEndpoint) -> None:
         """Let a client or a server join."""
         if isinstance(endpoint, ServiceClient):
-            self.clients.append(endpoint)
-            for server in self.servers:
+            self.clients.add(endpoint)
+            for server in self.servers.facing(endpoint):
                 _introduce(endpoint, server, endpoint)
         elif isinstance(endpoint, ServiceServer):
-            self.servers.append(endpoint)
-            for client in self.clients:
+            self.servers.add(endpoint)
+            for client in self.clients.facing(endpoint):
                 _introduce(client, endpoint, endpoint)
 
-    def remove(self, endpoint: ServiceEndpoint) -> None:
-        """Let it leave."""
+    def remove(self, endpoint: ServiceEndpoint) -> list[ReadySource]:
+        """Let it leave; returns clients to be notified."""
         if isinstance(endpoint, ServiceClient):
             self.clients.remove(endpoint)
-            for each in endpoint.servers:
-                server = each.end
-                server.clients = {gid: known for gid, known in server.clients.items() if gid != endpoint.gid}
-        elif isinstance(endpoint, ServiceServer):
+            for server in endpoint.servers:
+                server.clients.pop(endpoint.gid, None)
+            return []
+        if isinstance(endpoint, ServiceServer):
             self.servers.remove(endpoint)
-            for client in self.clients:
-                client.servers = tuple(known for known in client.servers if known.end is not endpoint)
+            clients = list(self.clients.facing(endpoint))
+            for client in clients:
+                client.disconnect(endpoint)
+            return [client for client in clients if client.lose(endpoint)]
+        return []
 
     def is_empty(self) -> bool:
         """True if no endpoint is left."""
         return not self.clients and not self.servers
+
+
+def _keep_quiet(_: Letter) -> None:
+    """Tell nobody: there are no other processes."""
 
 
 def _serialized(kind: MessageType, message: Any) -> bytes:
@@ -205,21 +315,27 @@ def _serialized(kind: MessageType, message: Any) -> bytes:
 
 
 def _introduce(client: ServiceClient, server: ServiceServer, newcomer: ServiceEndpoint) -> None:
-    if client.is_remote and server.is_remote:
-        return  # they meet where they are
     if client.service_type.name != server.service_type.name:
         return
     if mismatch(client.qos.writer, server.qos.reader) or mismatch(server.qos.writer, client.qos.reader):
         return
     to_client: Any = client
     to_server: Any = server
-    if client.service_type.type_hash != server.service_type.type_hash:
-        from rmw_local.encounter import meet_on_service  # late: definitions hardly ever differ
+    are_equal = client.service_type.type_hash == server.service_type.type_hash
+    if server.stands_in and (not are_equal or client.node.on_type_mismatch == "refuse"):
+        return  # whom it stands for has met this client
+    if not are_equal:
+        from rmw_local.mismatch.encounter import meet_on_service  # late: definitions hardly ever differ
 
         encounter, ends = meet_on_service(client, server)
         newcomer.encounters = (*newcomer.encounters, encounter)
         if ends is None:
             return
         to_client, to_server = ends
-    client.servers = (*client.servers, to_server)
-    server.clients = {**server.clients, client.gid: to_client}
+    side = client.node.participant.side
+    if side is not None and not (client.is_remote or server.is_remote):
+        from rmw_local.lockstep.held import HeldEnd  # late: few programs need it
+
+        to_client, to_server = HeldEnd(side, server, to_client), HeldEnd(side, client, to_server)
+    client.connect(server, to_server)
+    server.clients[client.gid] = to_client

@@ -195,19 +195,17 @@ class LivelinessChangedStatus(ReadySource):
     def __init__(self) -> None:
         super().__init__()
         self._lock = threading.Lock()
-        self._leases: tuple[Lease, ...] = ()
+        self._leases: dict[Lease, None] = {}  # of writers that may fall silent
         self.alive = self.alive_change = self.not_alive = self.not_alive_change = 0
         self.changed = False
 
     def watch(self, lease: Lease) -> None:
         """Follow a matched writer."""
-        with self._lock:
-            self._leases = (*self._leases, lease)
+        self._leases[lease] = None
 
     def forget(self, lease: Lease) -> None:
         """Stop following a writer that went."""
-        with self._lock:
-            self._leases = tuple(known for known in self._leases if known is not lease)
+        self._leases.pop(lease, None)
 
     def revived(self, *, was_lost: bool) -> None:
         """Count a writer that is alive now, and take back its loss."""
@@ -228,7 +226,7 @@ class LivelinessChangedStatus(ReadySource):
 
     def wake_at(self) -> int | None:
         """The end of the first lease [ns, steady]."""
-        return min((at for lease in self._leases if (at := lease.ends_at()) is not None), default=None)
+        return min((at for lease in list(self._leases) if (at := lease.ends_at()) is not None), default=None)
 
     def take(self) -> tuple[int, ...]:
         """Return (alive_count, not_alive_count, alive_count_change, not_alive_count_change) as of now."""
@@ -240,7 +238,7 @@ class LivelinessChangedStatus(ReadySource):
         return numbers
 
     def _catch_up(self) -> None:
-        for lease in self._leases:
+        for lease in list(self._leases):
             lease.catch_up()
 
     def _add(self, alive: int, not_alive: int) -> None:

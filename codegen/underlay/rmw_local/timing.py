@@ -16,7 +16,10 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from math import inf
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from rmw_local.lockstep.side import Side
 
 _END_OF_SELECTABLE = 1024  # FD_SETSIZE
 
@@ -84,8 +87,11 @@ class HandOverWaker(Waker):
 class Driver(Protocol):
     """The source of time, and the way in which a thread waits.
 
-    Steady times are ns since an arbitrary start.
+    Steady times are ns since an arbitrary start. `side` is this process's side of a lockstep run, if there is
+    one.
     """
+
+    side: Side | None
 
     def time_ns(self) -> int:
         """The system time [ns since 1970]."""
@@ -117,6 +123,7 @@ _LONGEST_SLEEP = 0.1 if _IS_DEAF else min(threading.TIMEOUT_MAX, 1e6)
 class SystemDriver:
     """Time of the operating system."""
 
+    side: Side | None = None
     time_ns = staticmethod(time.time_ns)
     monotonic_ns = staticmethod(time.monotonic_ns)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmw_local import observer
+from rmw_local.endpoint import Ends
 from rmw_local.qos import mismatch
 
 if TYPE_CHECKING:
@@ -22,24 +23,24 @@ class Topic:
 
     def __init__(self, name: str) -> None:
         self.name = name
-        self.writers: list[Writer] = []
-        self.readers: list[Reader] = []
-        self._refused: list[tuple[Writer, Reader]] = []  # because their definitions differ
+        self.writers: Ends[Writer] = Ends()
+        self.readers: Ends[Reader] = Ends()
+        self._refused: dict[Reader, set[Writer]] = {}  # by readers of this process: their definitions differ
 
     def add_writer(self, writer: Writer) -> list[ReadySource]:
         """Let a writer join."""
         changed: list[ReadySource] = []
-        for reader in self.readers:
+        for reader in self.readers.facing(writer):
             changed += self._introduce(writer, reader, newcomer=writer)
-        self.writers.append(writer)
+        self.writers.add(writer)
         return changed
 
     def add_reader(self, reader: Reader) -> list[ReadySource]:
         """Let a reader join; it gets what durable writers have kept."""
         changed: list[ReadySource] = []
-        for writer in self.writers:
+        for writer in self.writers.facing(reader):
             changed += self._introduce(writer, reader, newcomer=reader)
-        self.readers.append(reader)
+        self.readers.add(reader)
         if reader.is_ready():
             changed.append(reader)
         return changed
@@ -58,11 +59,10 @@ class Topic:
         """Let a reader leave."""
         self.readers.remove(reader)
         changed: list[ReadySource] = []
-        for writer in self.writers:
+        for writer in self.writers.facing(reader):
             if writer.reaches(reader):
                 changed += self._part(writer, reader, stays=writer)
-        if self._refused:
-            self._refused = [pair for pair in self._refused if pair[1] is not reader]
+        self._refused.pop(reader, None)
         return changed
 
     def is_empty(self) -> bool:
@@ -70,8 +70,6 @@ class Topic:
         return not self.writers and not self.readers
 
     def _introduce(self, writer: Writer, reader: Reader, *, newcomer: Endpoint) -> list[ReadySource]:
-        if writer.is_remote and reader.is_remote:
-            return []  # they meet where they are
         if writer.message_type.name != reader.message_type.name:
             return []  # DDS keeps topics of different types apart without a word
         if writer.qos.avoid_ros_namespace_conventions != reader.qos.avoid_ros_namespace_conventions:
@@ -84,7 +82,7 @@ class Topic:
             return _refuse_qos(writer, reader, policy_kind)
         origin = None
         if not are_equal:
-            from rmw_local.encounter import meet_on_topic  # late: definitions hardly ever differ
+            from rmw_local.mismatch.encounter import meet_on_topic  # late: definitions hardly ever differ
 
             encounter, origin = meet_on_topic(writer, reader)
             newcomer.encounters = (*newcomer.encounters, encounter)
@@ -98,7 +96,7 @@ class Topic:
     def _refuse(self, writer: Writer, reader: Reader, *, withholds: bool) -> list[ReadySource]:
         """Part two endpoints; if it `withholds`, keep the reader from everything until the writer leaves."""
         if withholds:
-            self._refused.append((writer, reader))
+            self._refused.setdefault(reader, set()).add(writer)
             reader.withhold()
         writer.incompatible_type.add()
         reader.incompatible_type.add()
@@ -106,11 +104,11 @@ class Topic:
 
     def _readmit(self, writer: Writer) -> list[ReadySource]:
         """Release the readers that refused nobody else than this writer."""
-        waiting = [reader for refused, reader in self._refused if refused is writer]
-        self._refused = [pair for pair in self._refused if pair[0] is not writer]
-        still_closed = {reader for _, reader in self._refused}
-        free = [reader for reader in waiting if reader not in still_closed]
+        free = [reader for reader, refused in self._refused.items() if refused == {writer}]
+        for refused in self._refused.values():
+            refused.discard(writer)
         for reader in free:
+            del self._refused[reader]
             reader.release()
         return [reader for reader in free if reader.is_ready()]
 

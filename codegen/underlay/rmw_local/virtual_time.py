@@ -14,17 +14,18 @@ import _thread
 import random
 import threading
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from functools import partial
+from typing import TYPE_CHECKING, TypeVar
 
 from rmw_local import timing
 from rmw_local.timing import Waker
 
+if TYPE_CHECKING:
+    from rmw_local.lockstep.side import Side
+
 START = 1_700_000_000 * 10**9  # [ns since 1970] what the system clock shows first
-# A loop that polls the clock and never blocks would wait for ever. After this number of readings, each
-# further one takes some time.
-_PATIENCE = 1000  # readings
 _READING_TAKES = 100_000  # [ns]
 
 
@@ -75,7 +76,7 @@ class PolledWaker(VirtualWaker):
         pass
 
 
-class _Member:
+class Member:
     """A thread in virtual time."""
 
     __slots__ = ("error", "gate", "name", "number", "until", "waker", "was_woken")
@@ -106,6 +107,11 @@ class _Visit:
 class VirtualDriver:
     """Gives time and turns to threads; see the module. The thread that makes it has the first turn."""
 
+    side: Side | None = None
+    # A loop that polls the clock and never blocks would wait for ever. After this number of readings, each
+    # further one takes some time.
+    patience = 1000
+
     def __init__(self, seed: int = 0, start: int = START) -> None:
         self._now = 0
         self._start = start
@@ -114,18 +120,18 @@ class VirtualDriver:
         # Guards what follows; held for moments, nothing is called inside. Reentrant for the sake of signal
         # handlers.
         self._lock = _thread.RLock()
-        self._members: dict[int, _Member] = {}  # by thread id; by minus its number before a thread has begun
+        self._members: dict[int, Member] = {}  # by thread id; by minus its number before a thread has begun
         self._numbers = 0
         self._visits = threading.local()
         self._closed = False
-        self._running: _Member | None = self._add(
+        self._running: Member | None = self._add(
             _thread.get_ident(), "main"
         )  # None: all wait for somebody outside
 
     def monotonic_ns(self) -> int:
         """The virtual steady time [ns]."""
         self._readings += 1
-        if self._readings > _PATIENCE:
+        if self._readings > self.patience:
             self._now += _READING_TAKES
         return self._now
 
@@ -166,13 +172,13 @@ class VirtualDriver:
         if member is not None and member.waker is not None:
             member.waker.wake()
 
-    def announce(self, thread: threading.Thread) -> _Member:
+    def announce(self, thread: threading.Thread) -> Member:
         """Make a member of a thread that is about to start."""
         with self._lock:
             number = -(self._numbers + 1)
             return self._add(number, thread.name)
 
-    def enter(self, me: _Member) -> None:
+    def enter(self, me: Member) -> None:
         """Wait for the first turn; called on the thread itself, before anything else."""
         with self._lock:
             self._members[_thread.get_ident()] = self._members.pop(-me.number)
@@ -214,12 +220,12 @@ class VirtualDriver:
             waker, None if until is None else timing.SYSTEM.monotonic_ns() + until - self._now
         )
 
-    def _add(self, key: int, name: str) -> _Member:
+    def _add(self, key: int, name: str) -> Member:
         self._numbers += 1
-        me = self._members[key] = _Member(self._numbers, name)
+        me = self._members[key] = Member(self._numbers, name)
         return me
 
-    def _await_turn(self, me: _Member) -> None:
+    def _await_turn(self, me: Member) -> None:
         interruption: BaseException | None = None
         while True:
             try:
@@ -249,25 +255,31 @@ class VirtualDriver:
         chosen.waker = chosen.until = None
         chosen.gate.release()
 
-    def _choose(self) -> _Member | None:
+    def _choose(self) -> Member | None:
         members = sorted(self._members.values(), key=lambda member: member.number)
         while members:
             able = [member for member in members if self._can_run(member)]
             if able:
                 return self._random.choice(able)
             deadlines = [member.until for member in members if member.until is not None]
-            if not deadlines:
+            if not self._let_time_pass(min(deadlines, default=None)):
                 return None
-            self._now = max(self._now, min(deadlines))
         return None
 
-    def _can_run(self, member: _Member) -> bool:
+    def _let_time_pass(self, deadline: int | None) -> bool:
+        """Pass to the next deadline [ns, steady], when nobody can run; returns False if there is none."""
+        if deadline is None:
+            return False
+        self._now = max(self._now, deadline)
+        return True
+
+    def _can_run(self, member: Member) -> bool:
         waker = member.waker
         if waker is None or (isinstance(waker, VirtualWaker) and waker.called):
             return True
         return member.until is not None and member.until <= self._now
 
-    def _stuck(self) -> _Member | None:
+    def _stuck(self) -> Member | None:
         """Return the member that raises DeadlockError; None if a thread that is no member may yet help."""
         if not self._members or any(self._may_help(thread) for thread in threading.enumerate()):
             return None
@@ -288,13 +300,22 @@ class VirtualDriver:
         )
 
 
+Driven = TypeVar("Driven", bound=VirtualDriver)
+
+
 @contextmanager
-def virtual_time(seed: int = 0, start: int = START) -> Iterator[VirtualDriver]:
+def virtual_time(seed: int = 0, start: int = START) -> Generator[VirtualDriver]:
     """Run the block in virtual time; `start` is what the system clock shows first [ns since 1970]."""
+    with driven_by(VirtualDriver(seed, start)) as driver:
+        yield driver
+
+
+@contextmanager
+def driven_by(driver: Driven) -> Generator[Driven]:
+    """Run the block on this driver, which has been made for it."""
     # Imported here: only tests need it, and it looks into threading's insides.
     from rmw_local.cooperative import cooperative_threading
 
-    driver = VirtualDriver(seed, start)
     old = timing.install(driver)
     try:
         with cooperative_threading(driver):

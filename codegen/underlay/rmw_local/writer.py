@@ -11,8 +11,8 @@ from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
 from rmw_local.liveliness import Lease
 from rmw_local.message import SerializationError, as_raised
-from rmw_local.passage import Marking
-from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC
+from rmw_local.mismatch.passage import Marking
+from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC, RELIABLE
 from rmw_local.status import DeadlineStatus, LivelinessLostStatus
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
-    from rmw_local.origin import Origin
+    from rmw_local.mismatch.origin import Origin
     from rmw_local.qos import QosProfile
     from rmw_local.reader import Reader, Sample
 
@@ -40,12 +40,16 @@ class Outlet(Protocol):
     def assert_alive(self) -> None:
         """Say that the writer is alive."""
 
+    def wait_until_received(self, writer: Writer, patience: int) -> bool:
+        """Wait until reliable readers have everything, for `patience` [ns]; returns whether they have."""
+
 
 class Writer(Endpoint):
     """A volatile writer: it keeps nothing, so publishing needs no lock.
 
     `readers` is replaced, never changed; a message that is being published while a reader joins or leaves may
-    reach it or not, as on any network. Some of them are stand-ins (`rmw_local.passage`).
+    reach it or not, as on any network. Some of them are stand-ins (`rmw_local.mismatch.passage`). Readers in
+    other processes, of which there may be tens of thousands, come and go in constant time.
     """
 
     role = "publisher"
@@ -54,20 +58,29 @@ class Writer(Endpoint):
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         super().__init__(node, message_type, topic, qos)
         self.readers: tuple[Reader | Marking | Outlet, ...] = ()  # what messages are delivered to
-        self.matches: tuple[Reader, ...] = ()  # those in other processes too, which share the outlet
+        self.near: tuple[Reader, ...] = ()  # the matched ones of this process; replaced, never changed
+        self.far: dict[Reader, int] = {}  # those elsewhere, and the last message that each does not get
         self.outlet: Outlet | None = None  # the way to other processes, while there are any
+        # Whether somebody there listens, announced or not, as tools do that know keys only
+        self.is_heard = False
         self._marking: dict[Reader, Marking] = {}  # the stand-ins; replaced, never changed
         self._own_origin: Origin | None = None  # once it publishes bytes
         self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
         self._manual = qos.liveliness == MANUAL_BY_TOPIC
         self.liveliness_lost = LivelinessLostStatus(qos.liveliness_lease_duration, manual=self._manual)
-        self._leases: dict[Reader, Lease] = {}  # of readers that want to know; replaced, never changed
+        self._leases: dict[Reader, Lease] = {}  # of near readers that want to know; replaced, never changed
         self._timed = self.deadline is not None or self._manual
         self._numbers = itertools.count(1)
+        self.last_number = 0  # of what it has published
         # How to serialise for these readers: one thing, so that no other reader gets what was made for one.
         self._route: tuple[Callable[[Any], Any], tuple[Reader | Marking | Outlet, ...]]
         self._route = (message_type.serialize, ())
         self._observer = observer.current()
+
+    @property
+    def matches(self) -> list[Reader]:
+        """The matched readers now: those in other processes, too, which share the outlet."""
+        return [*self.near, *self.far]
 
     def publish(self, message: Any) -> None:
         """Deliver a message of the writer's class; refuses field values that cannot be sent, read or not."""
@@ -86,7 +99,8 @@ class Writer(Endpoint):
         if self._timed:
             self._note_publication()
         now = timing.time_ns()
-        sample = (data, now, next(self._numbers), now)
+        self.last_number = number = next(self._numbers)
+        sample = (data, now, number, now)
         for reader in readers:
             reader.accept(sample)
         if self._observer is not None and not readers:
@@ -105,6 +119,15 @@ class Writer(Endpoint):
             if self.outlet is not None:
                 self.outlet.assert_alive()
 
+    def wait_until_received(self, patience: int) -> bool:
+        """Wait until reliable readers have everything, for `patience` [ns]; returns whether they have.
+
+        Those in this process have everything when publishing returns.
+        """
+        if self.outlet is None or self.qos.reliability != RELIABLE:
+            return True
+        return self.outlet.wait_until_received(self, patience)
+
     def sign_leases(self) -> None:
         """Note a sign of life."""
         for lease in (self.liveliness_lost.lease, *self._leases.values()):
@@ -112,20 +135,31 @@ class Writer(Endpoint):
 
     def connect(self, reader: Reader, origin: Origin | None = None) -> None:
         """Deliver to one more reader, marked with an origin. Called with the domain's lock held."""
+        if reader.is_remote:
+            self.far[reader] = self._last_before(reader)
+            if len(self.far) == 1:
+                self.settle_route()
+            return
         patience = reader.qos.liveliness_lease_duration
         if patience < INFINITE:
             lease = Lease(reader.liveliness_changed, patience, manual=self._manual)
-            reader.liveliness_changed.watch(lease)
+            if self._manual:  # others never lapse
+                reader.liveliness_changed.watch(lease)
             self._leases = {**self._leases, reader: lease}
-        if not reader.is_remote:
-            self.receiver(reader, origin)
-        self.matches = (*self.matches, reader)
+        self.receiver(reader, origin)
+        self.near = (*self.near, reader)
         self.settle_route()
 
     def attach(self, outlet: Outlet | None) -> None:
         """Deliver to other processes by this outlet from now on. Called with the domain's lock held."""
         self.outlet = outlet
+        for reader in self.far:
+            self.far[reader] = self._last_before(reader)
         self.settle_route()
+
+    def _last_before(self, reader: Reader) -> int:
+        """The number of the last message that is not for a reader elsewhere."""
+        return self.last_number
 
     def receiver(self, reader: Reader, origin: Origin | None = None) -> Reader | Marking:
         """The reader, or what stands for it."""
@@ -138,11 +172,16 @@ class Writer(Endpoint):
 
     def reaches(self, reader: Reader) -> bool:
         """Whether it delivers to a reader."""
-        return reader in self.matches
+        return reader in (self.far if reader.is_remote else self.near)
 
     def disconnect(self, reader: Reader) -> None:
         """Deliver to a reader no longer. Called with the domain's lock held."""
-        self.matches = tuple(known for known in self.matches if known is not reader)
+        if reader.is_remote:
+            del self.far[reader]
+            if not self.far:
+                self.settle_route()
+            return
+        self.near = tuple(known for known in self.near if known is not reader)
         self.settle_route()
         if reader in self._marking:
             self._marking = {each: known for each, known in self._marking.items() if each is not reader}
@@ -154,10 +193,11 @@ class Writer(Endpoint):
 
     def settle_route(self) -> None:
         """Choose how to serialise for the readers that there are now. Called with the domain's lock held."""
-        near = tuple(self.receiver(reader) for reader in self.matches if not reader.is_remote)
+        near = tuple(map(self.receiver, self.near))
         kind = self.message_type
         serialize = kind.serialize
-        if self.outlet is not None and (self._keeps or len(near) < len(self.matches)):
+        is_wanted = self._keeps or self.is_heard or self.far
+        if self.outlet is not None and is_wanted:
             self.readers = (*near, self.outlet)
         else:
             self.readers = near
@@ -169,7 +209,7 @@ class Writer(Endpoint):
 
     def _doubt(self) -> None:
         """Mark all messages, to readers that there are and to those to come."""
-        from rmw_local.origin import Origin  # late: few programs publish bytes
+        from rmw_local.mismatch.origin import Origin  # late: few programs publish bytes
 
         with self.node.participant.domain.lock:
             if self._own_origin is None:
@@ -202,7 +242,8 @@ class DurableWriter(Writer):
             self._note_publication()
         with self._lock:
             now = timing.time_ns()
-            sample = (data, now, next(self._numbers), now)
+            self.last_number = number = next(self._numbers)
+            sample = (data, now, number, now)
             self._history.append(sample)
             readers = self.readers
             for reader in readers:
@@ -223,6 +264,11 @@ class DurableWriter(Writer):
             if outlet is not None:
                 self._replay(outlet)
             super().attach(outlet)
+
+    def _last_before(self, reader: Reader) -> int:
+        """Readers that are durable get what is kept."""
+        is_owed = self._history and reader.qos.durability == self.qos.durability
+        return self._history[0][2] - 1 if is_owed else self.last_number
 
     def _replay(self, reader: Reader | Marking | Outlet) -> None:
         born_after = timing.time_ns() - self.qos.lifespan

@@ -53,7 +53,7 @@ def main() -> None:
             executor.add_node(node)
             kill_soon(number)
             attempt(f"{number.name} {kind.__name__} spin", executor.spin)
-            until(lambda: called)
+            until(lambda: not (rclpy.ok() or other.ok()))  # without a call of on_shutdown
             print(rclpy.ok(), other.ok(), called, get_current_signal_handlers_options())
             attempt("shutdown", rclpy.shutdown)
             attempt("try_shutdown", rclpy.try_shutdown)

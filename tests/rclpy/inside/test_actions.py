@@ -19,6 +19,7 @@ import pytest
 import rclpy
 from action_msgs.msg import GoalInfo
 from action_msgs.srv import CancelGoal
+from ifgen_pytest.domains import RANGE
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse, get_action_names_and_types
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -38,8 +39,9 @@ EXAMPLES = Path(__file__).parents[3] / "examples" / "action"
 
 
 @pytest.fixture(autouse=True)
-def _context() -> Iterator[None]:
-    """A domain for each test: entities left by one test are not in the graph of another."""
+def _context(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A domain for each test: entities left by one test are not in the graph of another. No process shares it."""
+    monkeypatch.setenv(RANGE, "OFF")
     rclpy.init(domain_id=next(_domains))
     yield
     rclpy.try_shutdown()

@@ -2,47 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 from ifgen.dynamic import class_from_text
-from ifgen_runtime import adapters
 from ifgen_runtime.adapters import Adapter, register
-from ifgen_runtime.mismatch import listeners
 from ifgen_runtime.mismatch.sides import Mismatch
 from rclpy.node import Node
 
-from tests.rclpy.inside.test_processes import DURABLE, Pair
-from tests.rclpy.inside.test_processes import pair as pair_of_each_kind
+from tests.rclpy.inside.contract.processes import DURABLE, Pair
 
 POINT = "demo_msgs/msg/Point"
 OldPoint = class_from_text(POINT, "float32 x")
 NewPoint = class_from_text(POINT, "float32 depth\nfloat32 x")
 OtherPoint = class_from_text(POINT, "string x")
-pair = pair_of_each_kind
 
 
 @pytest.fixture(autouse=True)
-def adapter(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(adapters, "_registered", {})
-    monkeypatch.setattr(adapters, "_found", {})
+def adapter(no_adapters: None, heard: list[Mismatch]) -> None:
     register(Adapter(OldPoint, NewPoint, lambda old: NewPoint(x=old.x, depth=0.1)))
 
 
-@pytest.fixture(autouse=True)
-def heard(monkeypatch: pytest.MonkeyPatch) -> list[Mismatch]:
-    noted: list[Mismatch] = []
-    monkeypatch.setattr(listeners, "heard", noted.append)
-    return noted
-
-
 @pytest.fixture
-def recorded() -> Iterator[Pair]:
-    made = Pair("recorded", Path())
-    yield made
-    made.end()
+def pair(across: Pair) -> Pair:
+    return across
 
 
 def adapting(pair: Pair, name: str) -> Node:

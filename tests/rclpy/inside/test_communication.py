@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 import rclpy
 from geometry_msgs.msg import Point, Pose
+from ifgen_pytest.domains import RANGE
 from ifgen_runtime.type_description import describe
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
@@ -24,8 +25,8 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message, serialize_message
 from rmw_local import observer, timing
-from rmw_local.drops import Drops
 from rmw_local.message import message_type
+from rmw_local.notices import Drops
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float32, Int8, String
 from std_srvs.srv import SetBool
@@ -160,8 +161,9 @@ def test_a_wrong_response_is_refused_by_the_service() -> None:
         service.service_send_response(SetBool.Response(message=b"x"), header.request_id)  # type: ignore[arg-type]
 
 
-def test_contexts_share_a_domain_and_nothing_crosses_domains() -> None:
+def test_contexts_share_a_domain_and_nothing_crosses_domains(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two contexts of one domain communicate; another domain receives and sees nothing."""
+    monkeypatch.setenv(RANGE, "OFF")  # other processes may use these domains
     contexts = [Context() for _ in range(3)]
     for context, domain in zip(contexts, (7, 7, 8), strict=True):
         context.init(domain_id=domain)

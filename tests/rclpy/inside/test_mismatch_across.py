@@ -1,19 +1,18 @@
 """Definitions that differ between processes: the other side is asked for its own, once and not for long.
 
-As in test_processes.py, domains of this process stand for processes.
+As in contract/processes.py, domains of this process stand for processes.
 """
 
 from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 from ifgen.dynamic import class_from_text
-from ifgen_runtime import adapters, from_dict
+from ifgen_runtime import from_dict
 from ifgen_runtime.mismatch import listeners
 from ifgen_runtime.mismatch.explanation import explanation
 from ifgen_runtime.mismatch.sides import Mismatch, definition_of
@@ -24,8 +23,7 @@ from std_msgs.msg import Float64
 from type_description_interfaces.msg import TypeDescription
 from type_description_interfaces.srv import GetTypeDescription
 
-from tests.rclpy.inside.test_processes import Pair
-from tests.rclpy.inside.test_processes import pair as pair_of_each_kind
+from tests.rclpy.inside.contract.processes import Pair
 
 POINT, ADD, WALK = "demo_msgs/msg/Point", "demo_msgs/srv/Add", "demo_msgs/action/Walk"
 OldPoint = class_from_text(POINT, "float32 x")
@@ -37,27 +35,14 @@ NewWalk = class_from_text(
     WALK, "float32 goal\nstring gait\n---\nfloat32 reached\n---\nfloat32 left\nuint8 step"
 )
 ASKED = "/get_type_description"
-pair = pair_of_each_kind
 
 
-@pytest.fixture(autouse=True)
-def no_adapters(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(adapters, "_registered", {})
-    monkeypatch.setattr(adapters, "_found", {})
-
-
-@pytest.fixture(autouse=True)
-def heard(monkeypatch: pytest.MonkeyPatch) -> list[Mismatch]:
-    noted: list[Mismatch] = []
-    monkeypatch.setattr(listeners, "heard", noted.append)
-    return noted
+pytestmark = pytest.mark.usefixtures("no_adapters", "heard")
 
 
 @pytest.fixture
-def recorded() -> Iterator[Pair]:
-    made = Pair("recorded", Path())
-    yield made
-    made.end()
+def pair(across: Pair) -> Pair:
+    return across
 
 
 def told(heard: list[Mismatch], role: str) -> list[Mismatch]:

@@ -8,9 +8,7 @@ from typing import Any
 import pytest
 import rclpy
 from ifgen.dynamic import class_from_text
-from ifgen_runtime import adapters
 from ifgen_runtime.adapters import Adapter, register
-from ifgen_runtime.mismatch import listeners
 from ifgen_runtime.mismatch.explanation import in_one_line
 from ifgen_runtime.mismatch.sides import Mismatch
 from rclpy.action import ActionClient, ActionServer
@@ -19,23 +17,20 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.task import Future
-from rmw_local import telling
+from rmw_local.mismatch import telling
 
-ADD, WALK = "demo_msgs/srv/Add", "demo_msgs/action/Walk"
-OldAdd = class_from_text(ADD, "float32 a\n---\nfloat32 sum")
-NewAdd = class_from_text(ADD, "float64 a\nfloat64 b\n---\nfloat64 sum\nstring note")
+from tests.rclpy.inside.adding import ADD, Message, NewAdd, OldAdd, adapters_for_add, new_add, old_add
+
+WALK = "demo_msgs/action/Walk"
 Answer = class_from_text(ADD, "float32 a\n---\nfloat32 sum\nuint8 rest")
 OldWalk = class_from_text(WALK, "float32 goal\n---\nfloat32 reached\n---\nfloat32 left")
 NewWalk = class_from_text(
     WALK, "float64 goal\nstring gait\n---\nfloat64 reached\n---\nfloat64 left\nuint8 step"
 )
-Message = Any
 
 
 @pytest.fixture(autouse=True)
-def executor(monkeypatch: pytest.MonkeyPatch) -> Iterator[SingleThreadedExecutor]:
-    monkeypatch.setattr(adapters, "_registered", {})
-    monkeypatch.setattr(adapters, "_found", {})
+def executor(no_adapters: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[SingleThreadedExecutor]:
     monkeypatch.setattr(telling, "explanation", in_one_line)  # whether or not the toolkit is installed
     rclpy.init()
     made = SingleThreadedExecutor()
@@ -56,50 +51,6 @@ def node(executor: SingleThreadedExecutor) -> Callable[..., Node]:
         return made
 
     return make
-
-
-@pytest.fixture
-def heard(monkeypatch: pytest.MonkeyPatch) -> list[Mismatch]:
-    noted: list[Mismatch] = []
-    monkeypatch.setattr(listeners, "heard", noted.append)
-    return noted
-
-
-@pytest.fixture
-def log(capfd: pytest.CaptureFixture[str]) -> Callable[[], list[str]]:
-    """The warnings since the last call."""
-    return lambda: [line for line in capfd.readouterr().err.splitlines() if "[WARN]" in line]
-
-
-def adapters_for_add() -> None:
-    register(
-        Adapter(
-            OldAdd.Request,
-            NewAdd.Request,
-            lambda m: NewAdd.Request(a=m.a, b=0.1),
-            lambda m: OldAdd.Request(a=m.a),
-        )
-    )
-    register(
-        Adapter(
-            OldAdd.Response,
-            NewAdd.Response,
-            lambda m: NewAdd.Response(sum=m.sum, note="adapted"),
-            lambda m: OldAdd.Response(sum=m.sum),
-        )
-    )
-
-
-def new_add(request: Message, response: Message) -> Message:
-    assert type(request) is NewAdd.Request
-    response.sum = request.a + request.b
-    return response
-
-
-def old_add(request: Message, response: Message) -> Message:
-    assert type(request) is OldAdd.Request
-    response.sum = request.a * 2
-    return response
 
 
 def result(executor: SingleThreadedExecutor, future: Future[Any]) -> Any:

@@ -16,13 +16,13 @@ import pytest
 import rclpy
 from ifgen.cli.evolution.explain import explain
 from ifgen.dynamic import class_from_text
-from ifgen_runtime import adapters
 from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.codec import serialize
 from ifgen_runtime.errors import SerializationError
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rmw_local import report, telling
+from rmw_local import report
+from rmw_local.mismatch import telling
 
 from tests.evolution.corpus import Edit, edits, messages
 
@@ -54,10 +54,8 @@ def pairs() -> list[tuple[Edit, Any, Any]]:
 
 
 @pytest.fixture
-def said(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
+def said(no_adapters: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     """The warnings, by the toolkit, installed or not."""
-    monkeypatch.setattr(adapters, "_registered", {})
-    monkeypatch.setattr(adapters, "_found", {})
     monkeypatch.setattr(telling, "explanation", lambda mismatch: explain(asdict(mismatch)))
     texts: list[str] = []
     monkeypatch.setattr(report, "say", lambda node, text, is_warning=True: texts.append(text))

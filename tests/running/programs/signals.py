@@ -62,6 +62,9 @@ def spin(**options):
     except (KeyboardInterrupt, ExternalShutdownException):
         print("spin has ended")
     finally:
+        end = time.monotonic() + 20.0
+        while not options and rclpy.ok() and time.monotonic() < end:  # the real one ends it on a thread, soon
+            time.sleep(0.01)
         print("finally", rclpy.ok())
         node.destroy_node()
         rclpy.try_shutdown()

@@ -6,7 +6,7 @@ from collections.abc import Coroutine
 from typing import TYPE_CHECKING, Any
 
 from rclpy._executor.ready_queue import ReadyQueue
-from rclpy._executor.tasks import TaskList, Work
+from rclpy._executor.tasks import TaskList, Work, run, run_in_pool
 from rclpy._executor.watch import Watch
 from rclpy.task import Task
 
@@ -83,6 +83,14 @@ class CallbackRunner:
             self._queue.poke()
         elif self._tasks:
             self._queue.poke()
+
+    def run_task(self, work: Work) -> None:
+        """Run a task on this thread, and raise what it raises."""
+        run(work[0])
+
+    def run_in_pool(self, work: Work) -> None:
+        """Run a task on a thread of a pool, and keep what it raises."""
+        run_in_pool(work[0])
 
     async def _finish(self, unfinished: Coroutine[Any, Any, Any], entity: Any, group: CallbackGroup) -> None:
         """Await the rest of a callback; its group stays occupied until then."""

@@ -11,6 +11,7 @@ from collections.abc import Callable, Coroutine
 from types import CoroutineType
 from typing import TYPE_CHECKING, Any, Protocol
 
+from ifgen_runtime.errors import ServerGoneError
 from rmw_local.ready import Listener
 
 from rclpy._executor.inbox import Inbox, Mark, tells_nobody
@@ -203,9 +204,11 @@ class ClientWatch(Watch):
     plural = "clients"
 
     def take(self) -> Any:
-        """Take a response; None if the handle is gone."""
+        """Take a response, or the failure of a request; None if the handle is gone."""
         try:
             header, response = self.source.take_response(self.entity.srv_type.Response)
+            if header is None:
+                header, response = self.source.take_failure()
         except RCLError:
             if self.source.pointer:
                 raise
@@ -220,7 +223,10 @@ class ClientWatch(Watch):
         except KeyError:
             return None
         future._set_executor(executor)
-        future.set_result(response)
+        if type(response) is ServerGoneError:
+            future._fail(response)
+        else:
+            future.set_result(response)
         return None
 
 

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalStatus
+from ifgen_runtime.errors import ServerGoneError
 from rmw_local import timing
 from unique_identifier_msgs.msg import UUID
 
@@ -299,8 +300,11 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
     def _receive_goal_response(self, number: int, response: Any) -> None:
         future = self._withdraw(number, self._pending_goal_requests, self._remove_pending_goal_request)
         goal_id = self._goal_sequence_number_to_goal_id.pop(number, None)
-        goal_handle = None
-        if future is not None:
+        goal_handle: Any = None
+        if type(response) is ServerGoneError:
+            goal_handle = response
+            self._feedback_callbacks.pop(key_of(goal_id), None)
+        elif future is not None:
             goal_handle = ClientGoalHandle(self, goal_id, response)
             key = key_of(goal_id)
             if not goal_handle.accepted:
@@ -312,7 +316,10 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
         self._complete(future, goal_handle, "goal")
 
     def _complete(self, future: Future | None, value: Any, kind: str) -> None:
-        if future is not None:
+        if type(value) is ServerGoneError:
+            if future is not None:
+                future._fail(value)
+        elif future is not None:
             future.set_result(value)
         else:
             self._logger.warning(

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rmw_local import timing
-from rmw_local.passage import Marking
+from rmw_local.mismatch.passage import Marking
 from rmw_local.reader import Reader
 from rmw_local.transports.remote import RemoteWriter
 
 if TYPE_CHECKING:
-    from rmw_local.encounter import Encounter
+    from rmw_local.mismatch.encounter import Encounter
     from rmw_local.transports.others import Others
 
 
@@ -34,8 +34,11 @@ class Adapted:
         if isinstance(writer, RemoteWriter):
             marked = writer.receiver(self.reader)
             is_theirs = writer.kind.type_hash == self.type_hash and writer.reaches(self.reader)
-            if not (is_theirs and isinstance(marked, Marking)) or stamp <= now - writer.qos.lifespan:
-                return  # not matched, or too old
+            if not (is_theirs and isinstance(marked, Marking)):
+                return  # not matched
+            writer.note_arrival(self.reader, number)
+            if stamp <= now - writer.qos.lifespan:
+                return  # too old
             writer.note_life()
             end = marked
         end.accept((data, stamp, number, now))

@@ -19,8 +19,8 @@ from rmw_local.message import service_type
 from rmw_local.transports.seam import Entity, Kind
 
 if TYPE_CHECKING:
-    from rmw_local.encounter import Party
-    from rmw_local.graph import Domain
+    from rmw_local.domain import Domain
+    from rmw_local.mismatch.encounter import Party
     from rmw_local.transports.seam import Transport
 
     Answers = Callable[[], Iterable[bytes]]  # what has come since the last call

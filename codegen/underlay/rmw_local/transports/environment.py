@@ -10,9 +10,19 @@ from typing import Final
 from rmw_local.notices import say
 
 _RANGE: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+_PEERS: Final = "ROS_STATIC_PEERS"
+_ONLY_HERE: Final = "ROS_LOCALHOST_ONLY"  # older than the two above, and before them if it is 1
+_SECURITY: Final = "ROS_SECURITY_ENABLE"
 _LOCAL, _SUBNET = "LOCALHOST", "SUBNET"
 _RANGES: Final = ("OFF", _LOCAL, _SUBNET, "SYSTEM_DEFAULT")  # where it is OFF, nobody asks further
 _ROUTER_PORT: Final = 7447
+_LAST_PORT: Final = 65535
+_PROTOCOLS: Final = ("tcp", "tls", "quic", "udp", "ws")
+_NOT_IN_HOSTS: Final = frozenset(" \t,/")
+_POOL: Final = 64 * 1024 * 1024  # bytes
+_LARGE: Final = 192 * 1024  # bytes; below, notices cost more than copies save (benchmarks/processes.py)
+_OF_OTHERS: Final = ("access_control", "connect", "listen", "mode", "scouting")
+"""Parts of Zenoh's configuration that say who is found, and who is kept out."""
 NO_END: Final = 2**31
 """A number of attempts."""
 
@@ -33,6 +43,17 @@ class Environment:
     """The number of times to look for a router before nodes are made."""
 
     @property
+    def expects_router(self) -> bool:
+        """Whether sessions may have to wait for somebody who connects them."""
+        return bool(self.routers or self.config_file)
+
+    @property
+    def is_private(self) -> bool:
+        """Whether only this user's processes on this machine are met, and Zenoh keeps none of them out."""
+        is_plain = not any(path.startswith(_OF_OTHERS) for path, _ in self.overrides)
+        return is_plain and not (self.subnet or self.expects_router)
+
+    @property
     def reaches_further(self) -> bool:
         """Whether there may be others than this user's processes on this machine."""
         return bool(self.subnet or self.routers or self.config_file or self.overrides)
@@ -44,9 +65,15 @@ def read(variables: Mapping[str, str] = os.environ) -> Environment:
     if reach not in _RANGES:
         say(f"{_RANGE} is {reach!r}, expected one of {', '.join(_RANGES)}: assuming {_LOCAL}")
         reach = _LOCAL
+    peers = variables.get(_PEERS, "")
+    if variables.get(_ONLY_HERE) == "1" and (reach == _SUBNET or peers):
+        say(f"{_ONLY_HERE} is 1, which comes before {_RANGE} and {_PEERS}: they are ignored")
+        reach, peers = _LOCAL, ""
     config_file = variables.get("ZENOH_SESSION_CONFIG_URI", "")
-    routers = _routers(variables.get("ROS_STATIC_PEERS", ""))
+    routers = _routers(peers)
     attempts = variables.get("ZENOH_ROUTER_CHECK_ATTEMPTS", "")
+    if variables.get(_SECURITY) == "true" and (reach == _SUBNET or routers or config_file):
+        say(f"{_SECURITY} is true, but there is no SROS 2 here: use TLS, or others can listen")
     return Environment(
         subnet=reach == _SUBNET,
         routers=routers,
@@ -56,9 +83,31 @@ def read(variables: Mapping[str, str] = os.environ) -> Environment:
     )
 
 
+def read_memory(variables: Mapping[str, str] = os.environ) -> tuple[int, int]:
+    """The memory that a process may share, and the size of the messages that go through it [bytes]."""
+    size = _bytes_of(variables, "ZENOH_SHM_ALLOC_SIZE", _POOL)
+    return size, _bytes_of(variables, "ZENOH_SHM_MESSAGE_SIZE_THRESHOLD", _LARGE)
+
+
+def _bytes_of(variables: Mapping[str, str], name: str, default: int) -> int:
+    text = variables.get(name) or str(default)
+    if text.isdecimal() and text.isascii():
+        return int(text)
+    say(f"{name} is {text!r}, expected a whole number of bytes: assuming {default}")
+    return default
+
+
 def _routers(text: str) -> tuple[str, ...]:
     """The hosts in ROS_STATIC_PEERS, each with or without a port, between semicolons."""
-    return tuple(_endpoint(host.strip()) for host in text.split(";") if host.strip())
+    found: list[str] = []
+    for peer in filter(None, map(str.strip, text.split(";"))):
+        endpoint = _endpoint(peer)
+        if _can_be_reached(endpoint):
+            found.append(endpoint)
+        else:
+            expected = "HOST, HOST:PORT or PROTOCOL/HOST:PORT, with semicolons between several"
+            say(f"{_PEERS} has {peer!r}, expected {expected}: ignored")
+    return tuple(found)
 
 
 def _endpoint(host: str) -> str:
@@ -69,6 +118,14 @@ def _endpoint(host: str) -> str:
         return f"tcp/[{host}]:{_ROUTER_PORT}"
     has_port = ":" in host.rpartition("]")[2]
     return f"tcp/{host}" if has_port else f"tcp/{host}:{_ROUTER_PORT}"
+
+
+def _can_be_reached(endpoint: str) -> bool:
+    """Whether a network may have such an endpoint. Zenoh tries all for ever, and says nothing of mistakes."""
+    protocol, _, place = endpoint.partition("/")
+    host, _, port = place.partition("#")[0].partition("?")[0].rpartition(":")  # options may follow
+    is_port = port.isdecimal() and port.isascii() and 0 < int(port) <= _LAST_PORT
+    return protocol in _PROTOCOLS and is_port and bool(host) and not set(host) & _NOT_IN_HOSTS
 
 
 def _overrides(text: str) -> tuple[tuple[str, str], ...]:

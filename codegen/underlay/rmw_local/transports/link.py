@@ -14,26 +14,32 @@ import threading
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from rmw_local import timing
-from rmw_local.graph import Domain, GraphNode, Participant, endpoints
+from rmw_local.domain import Domain, endpoints
+from rmw_local.graph import GraphNode, Participant
 from rmw_local.reader import Reader, Sample
 from rmw_local.ready import ReadySource
-from rmw_local.service import Letter, ServiceClient, ServiceEndpoint, ServiceServer
+from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceServer
+from rmw_local.transports.background import Background
 from rmw_local.transports.others import Others
-from rmw_local.transports.remote import RemoteWriter
+from rmw_local.transports.remote import RemoteReader, RemoteWriter
 from rmw_local.transports.seam import Entity, Kind
+from rmw_local.transports.services import ShownClient, ShownServer
 from rmw_local.transports.teller import Teller
 from rmw_local.writer import Writer
 
 if TYPE_CHECKING:
-    from rmw_local.encounter import Encounter
     from rmw_local.message import MessageType, ServiceType
+    from rmw_local.mismatch.encounter import Encounter
     from rmw_local.qos import QosProfile
-    from rmw_local.transports.seam import Asking, Presence, Publication, Serving, Transport
+    from rmw_local.transports.seam import Presence, Publication, Receipt, Transport
 
 Local = GraphNode | Writer | Reader | ServiceEndpoint
+
+_FAREWELL: Final = 2.0
+"""Seconds that the end of a process waits for a warning that is being made."""
 
 
 class Link:
@@ -41,7 +47,8 @@ class Link:
 
     def __init__(self, domain: Domain, transport: Transport) -> None:
         self.others = Others(domain)
-        self._teller = Teller(domain, transport)
+        self._background = Background()
+        self._teller = Teller(domain, transport, self._background)
         self._domain = domain
         self._transport = transport
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
@@ -54,12 +61,15 @@ class Link:
     def open(self) -> None:
         """Join: learn of the others, and announce everything that is there. Raises TransportError."""
         self._transport.open(self._on_entity, self._on_alive)
+        self._transport.acknowledge(self._on_receipts)
+        self._transport.offer(self._on_question)
         self._domain.link = self
         self._domain.bury()
         with self._domain.lock:
             local: list[Local] = [*self._domain.nodes, *endpoints(self._domain)]
         for entity in local:
             self.announce(entity)
+        self._transport.settle()
 
     def close(self) -> None:
         """Leave: others see nothing of this process any more, nor it of them."""
@@ -70,6 +80,7 @@ class Link:
             self._presences.clear()
             self._adapted.clear()
         self._teller.close()
+        self._background.end(_FAREWELL)
         self._transport.close()
         self._part()
 
@@ -86,6 +97,8 @@ class Link:
                     endpoint.attach(None)
                 elif isinstance(endpoint, ServiceClient | ServiceServer):
                     endpoint.beyond = None
+                if isinstance(endpoint, ServiceClient):
+                    endpoint.expect_nothing()
             changed = self.others.remove_all()
         _notify(changed)
 
@@ -109,29 +122,42 @@ class Link:
                 each.close()
 
     def attend_to(self, encounters: Iterable[Encounter]) -> None:
-        """Receive what is adapted, and tell of encounters across processes, later and on other threads."""
+        """Adapt, and tell of encounters across processes, later and on other threads."""
         encounters = list(encounters)
         adapting = [
             each for each in encounters if each.adapts and not _participant(each.mine).keeps_to_itself
         ]
-        if adapting:
-            _thread.start_new_thread(self._adapt, (adapting,))
+        if any(_participant(each.mine).side for each in adapting):
+            self._adapt(adapting)  # lockstep: others are to learn of it in the same round each time
+        elif adapting:
+            self._background.start(self._adapt, adapting)
         self._teller.tell_of(encounters)
 
     def _adapt(self, encounters: Iterable[Encounter]) -> None:
-        """Subscribe once more, to messages that are addressed to other definitions."""
+        """Receive what is addressed to other definitions. Clients send to these, and need no preparation."""
+        for encounter in encounters:
+            mine = encounter.mine
+            if isinstance(mine, Reader | ServiceServer):
+                self.announce(mine)  # which may be about to happen
+                with self._lock:
+                    if mine in self._presences:
+                        self._show_again(mine, encounter)
+
+    def _show_again(self, mine: Reader | ServiceServer, encounter: Encounter) -> None:
         from rmw_local.transports.adapted import Adapted  # late: definitions hardly ever differ
 
-        for encounter in encounters:
-            adapted = Adapted(self.others, encounter)
-            reader = adapted.reader
-            with self._lock:
-                known = self._adapted.get(reader, {})
-                if self._closed or reader.closed or adapted.type_hash in known:
-                    continue
-                entity = replace(self._described(reader), type_hash=adapted.type_hash, stands_in=True)
-                presence = self._transport.subscribe(entity, adapted)
-                self._adapted[reader] = {**known, adapted.type_hash: presence}
+        type_hash = encounter.theirs.kind.type_hash
+        entity = replace(self._described(mine), type_hash=type_hash, stands_in=True)
+        presence = self._presences[mine]
+        if isinstance(presence, ShownServer) and encounter.converting is not None:
+            presence.adapt(entity, encounter.converting)
+        elif isinstance(mine, Reader) and type_hash not in self._adapted.get(mine, {}):
+            further = self._transport.subscribe(entity, Adapted(self.others, encounter))
+            self._adapted[mine] = {**self._adapted.get(mine, {}), type_hash: further}
+
+    def survey(self, patience: float) -> Callable[[], Iterable[bytes]]:
+        """Ask all other processes for their statistics; see `Transport.survey`."""
+        return self._transport.survey(patience)
 
     # What leaves
 
@@ -139,20 +165,18 @@ class Link:
         if isinstance(entity, GraphNode):
             return self._transport.announce(self._described(entity))
         if isinstance(entity, Writer):
-            publication = self._transport.publish(self._described(entity))
+            publication = self._transport.publish(self._described(entity), partial(_audience, entity))
             with self._domain.lock:
                 entity.attach(_Outlet(publication))
+            publication.watch(partial(self._on_listeners, entity))
             return publication
         if isinstance(entity, Reader):
             return self._transport.subscribe(self._described(entity), partial(self._on_sample, entity))
         if isinstance(entity, ServiceClient):
-            asking = self._transport.ask(self._described(entity), partial(_on_reply, entity))
-            entity.beyond = partial(_ask, asking)
-            return asking
+            on_over = partial(self._on_over, entity)
+            return ShownClient(entity, self._described(entity), self._transport, on_over)
         assert isinstance(entity, ServiceServer)
-        serving = self._transport.serve(self._described(entity), partial(_on_request, entity))
-        entity.beyond = partial(_reply, serving)
-        return serving
+        return ShownServer(entity, self._described(entity), self._transport)
 
     def _described(self, entity: Local) -> Entity:
         node = entity if isinstance(entity, GraphNode) else entity.node
@@ -163,6 +187,7 @@ class Link:
         if isinstance(entity, GraphNode):
             return describe(Kind.NODE, node_id, node_id)
         name, kind, qos = _interface_of(entity)
+        is_of_service = isinstance(entity, ServiceEndpoint)
         return describe(
             _kind(entity),
             node_id,
@@ -171,23 +196,59 @@ class Link:
             type_name=kind.name,
             type_hash=kind.type_hash,
             qos=qos,
+            refuses=is_of_service and node.on_type_mismatch == "refuse",
         )
 
     # What arrives, on the transport's threads
 
     def _on_entity(self, entity: Entity, appeared: bool) -> None:
         with self._domain.lock:
-            changed = self.others.add(entity) if appeared else self.others.remove(entity.gid)
-            joined = self.others.get(entity.gid)
+            newcomer: Entity | None = entity
+            changed: list[ReadySource] = []
+            if not appeared:
+                changed = self.others.remove(entity.gid)
+                newcomer = self.others.take_next()
+            if newcomer is not None:
+                changed += self.others.add(newcomer)
+            joined = None if newcomer is None else self.others.get(newcomer.gid)
         _notify(changed)
         if joined is not None and not isinstance(joined, GraphNode) and joined.encounters:
             encounters, joined.encounters = joined.encounters, ()
             self.attend_to(encounters)
 
+    def _on_listeners(self, writer: Writer, are_there: bool) -> None:
+        with self._domain.lock:
+            writer.is_heard = are_there
+            writer.settle_route()
+
     def _on_alive(self, gid: bytes) -> None:
         writer = self.others.get(gid)
         if isinstance(writer, RemoteWriter):
             writer.note_life()
+
+    def _on_over(self, client: ServiceClient, number: int, reason: str) -> None:
+        if self._closed or not client.expects(number):
+            return  # who leaves is not told that others are gone
+        with self._domain.lock:
+            has_failed = client.give_up(number, reason)
+        if has_failed:
+            client.notify()
+
+    def _on_receipts(self, gid: bytes) -> list[Receipt]:
+        writer = self.others.get(gid)
+        if not isinstance(writer, RemoteWriter):
+            return []
+        return [
+            writer.receipt(reader, presence.gid)
+            for reader in writer.near
+            for presence in (self._presences.get(reader), *self._adapted.get(reader, {}).values())
+            if presence is not None
+        ]
+
+    def _on_question(self) -> bytes:
+        from rmw_local import statistics  # late: hardly anybody asks
+
+        return statistics.of(self._domain).answer()
 
     def _on_sample(self, reader: Reader, data: bytes, number: int, stamp: int, gid: bytes) -> None:
         now = timing.time_ns()
@@ -195,8 +256,11 @@ class Link:
         if isinstance(writer, RemoteWriter):
             # Another definition has a subscription of its own (`Adapted`).
             is_matched = writer.kind.type_hash == reader.kind.type_hash and writer.reaches(reader)
-            if not is_matched or stamp <= now - writer.qos.lifespan:
-                return  # not matched, or too old
+            if not is_matched:
+                return
+            writer.note_arrival(reader, number)
+            if stamp <= now - writer.qos.lifespan:
+                return  # too old
             writer.note_life()
         # Otherwise nobody has announced this publisher: some tools send without.
         reader.accept((data, stamp, number, now))
@@ -207,6 +271,7 @@ class _Outlet:
 
     def __init__(self, publication: Publication) -> None:
         self._put = publication.put
+        self._ask = publication.receipts
         self.assert_alive: Callable[[], None] = publication.assert_alive
 
     def accept(self, sample: Sample) -> None:
@@ -214,26 +279,17 @@ class _Outlet:
 
     store = accept
 
+    def wait_until_received(self, writer: Writer, patience: int) -> bool:
+        from rmw_local.transports.receipts import wait_for_receipts  # late: few programs wait
+
+        return wait_for_receipts(writer, self._ask, patience)
+
     def announce(self) -> None:
         pass
 
 
-def _ask(asking: Asking, letter: Letter) -> None:
-    data, stamp, _, number, *_ = letter
-    asking.ask(data, number, stamp)
-
-
-def _reply(serving: Serving, letter: Letter) -> bool:
-    data, stamp, client, number, *_ = letter
-    return serving.reply(data, number, stamp, client)
-
-
-def _on_reply(client: ServiceClient, data: bytes, number: int, stamp: int) -> None:
-    client.accept((data, stamp, client.gid, number))
-
-
-def _on_request(server: ServiceServer, data: bytes, number: int, stamp: int, gid: bytes) -> None:
-    server.accept((data, stamp, gid, number))
+def _audience(writer: Writer) -> list[tuple[str, bytes]]:
+    return [(reader.peer, reader.gid) for reader in list(writer.far) if isinstance(reader, RemoteReader)]
 
 
 def _notify(changed: Iterable[ReadySource]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from typing import TYPE_CHECKING, Final
 from weakref import WeakValueDictionary
 
@@ -17,11 +18,16 @@ from rmw_local.transports.remote import (
 from rmw_local.transports.seam import Entity, Kind
 
 if TYPE_CHECKING:
-    from rmw_local.graph import Domain
+    from rmw_local.domain import Domain
     from rmw_local.ready import ReadySource
 
 _MOST_ENTITIES: Final = 50_000
-"""The number of nodes and endpoints of others that a domain remembers."""
+"""The number of nodes and endpoints of others that a domain's graph has.
+
+It is one for all peers: a token says itself whose it is, so a limit for each would not stop a peer that lies.
+"""
+_MOST_WAITING: Final = 10_000
+"""The number of those that wait for room in it, in the order in which they came."""
 
 Remote = RemoteNode | RemoteWriter | RemoteReader | RemoteClient | RemoteServer
 
@@ -35,7 +41,8 @@ class Others:
 
     def __init__(self, domain: Domain) -> None:
         self.refused = 0
-        """The number of entities that others announced in excess of what is remembered."""
+        """The number of entities that others announced when there was no room."""
+        self._waiting: OrderedDict[bytes, Entity] = OrderedDict()  # of those, by gid
         self._domain = domain
         self._participant = RemoteParticipant(domain)
         self._known: dict[bytes, Remote] = {}  # by gid
@@ -53,7 +60,7 @@ class Others:
         if entity.gid in self._known:
             return []
         if len(self._known) >= _MOST_ENTITIES:
-            self._refuse()
+            self._refuse(entity)
             return []
         node = self._node_of(entity)
         joined: Remote
@@ -61,7 +68,7 @@ class Others:
         match entity.kind:
             case Kind.NODE:
                 joined = node
-                self._domain.nodes.append(node)
+                self._domain.nodes[node] = None
             case Kind.PUBLISHER:
                 joined = RemoteWriter(node, entity)
                 changed = self._domain.topic(entity.name).add_writer(joined)
@@ -77,8 +84,15 @@ class Others:
         self._known[entity.gid] = joined
         return [*changed, self._domain.changed]
 
+    def take_next(self) -> Entity | None:
+        """Remove and return the first entity that waits, if there is room for it."""
+        if not self._waiting or len(self._known) >= _MOST_ENTITIES:
+            return None
+        return self._waiting.popitem(last=False)[1]
+
     def remove(self, gid: bytes) -> list[ReadySource]:
-        """Let an entity leave the graph."""
+        """Let an entity leave the graph, or wait for it no longer."""
+        self._waiting.pop(gid, None)
         left = self._known.pop(gid, None)
         if left is None:
             return []
@@ -86,7 +100,7 @@ class Others:
         changed: list[ReadySource] = []
         topics, services = self._domain.topics, self._domain.services
         if isinstance(left, RemoteNode):
-            self._domain.nodes.remove(left)
+            del self._domain.nodes[left]
         elif isinstance(left, RemoteWriter | RemoteReader):
             topic = topics[left.topic]
             changed = (
@@ -96,13 +110,14 @@ class Others:
                 del topics[left.topic]
         else:
             service = services[left.name]
-            service.remove(left)
+            changed = service.remove(left)
             if service.is_empty():
                 del services[left.name]
         return [*changed, self._domain.changed]
 
     def remove_all(self) -> list[ReadySource]:
         """Let everybody leave."""
+        self._waiting.clear()
         return [source for gid in list(self._known) for source in self.remove(gid)]
 
     def _node_of(self, entity: Entity) -> RemoteNode:
@@ -112,10 +127,12 @@ class Others:
             node = self._nodes[key] = RemoteNode(self._participant, entity)
         return node
 
-    def _refuse(self) -> None:
+    def _refuse(self, entity: Entity) -> None:
+        if len(self._waiting) < _MOST_WAITING:
+            self._waiting[entity.gid] = entity
         if not self.refused:
             say(
                 f"other processes announce more than {_MOST_ENTITIES} nodes and endpoints in ROS domain "
-                f"{self._domain.number}: the rest is ignored"
+                f"{self._domain.number}: the rest is ignored until there is room"
             )
         self.refused += 1

@@ -11,16 +11,18 @@ import atexit
 import itertools
 import os
 import time
+from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar, Final
 
+from rmw_local.domain import forget_domains
 from rmw_local.notices import say
-from rmw_local.transports.doorbell import IS_POSSIBLE, Doorbell
-from rmw_local.transports.errors import TransportError
+from rmw_local.transports.doorbell import BELL, CLOCK, IS_POSSIBLE, Doorbell
+from rmw_local.transports.errors import ConfigurationError, TransportError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from rmw_local.graph import Domain
+    from rmw_local.domain import Domain
     from rmw_local.transports.environment import Environment
     from rmw_local.transports.link import Link
     from rmw_local.transports.zenoh.engine import ZenohTransport
@@ -29,6 +31,10 @@ if TYPE_CHECKING:
 
 _PATIENCE: Final = 1.0  # [s] until endpoints count as unmatched where Zenoh is missing
 _CHECK_EVERY: Final = 1.0  # [s], for a router
+_WITHOUT_SOCKETS: Final = (
+    "where Python has no Unix sockets. Set ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET, or start `ifgen router` and "
+    "set ROS_STATIC_PEERS=127.0.0.1"
+)
 _CONNECTING: Final = 0.1  # [s] that a connection takes at most, on a sound network
 _OF_FURTHER: Final = (
     "ROS_AUTOMATIC_DISCOVERY_RANGE",
@@ -61,11 +67,18 @@ class Reach:
         self._link: Link | None = None
         self._transport: ZenohTransport | None = None
         self._has_begun = self._has_ended = False
+        self._rung_at = 0  # how many processes were there before this one
         self._has_said = False
         self.all.append(self)
 
     def begin(self) -> None:
         """Look for others, and let them find this process."""
+        if _inherited_sessions:
+            say(
+                "other processes are not reached: this process was forked from one that reaches them, and "
+                "Zenoh works in no fork. Start it with 'spawn' or 'forkserver' of multiprocessing"
+            )
+            return
         further = self._environment
         if IS_POSSIBLE and not (further and (further.config_file or further.routers)):
             try:
@@ -73,11 +86,47 @@ class Reach:
             except TransportError as error:
                 say(f"other processes are not reached: {error}")
         if self._bell is not None:
+            if self._bell.is_beside(CLOCK):
+                number = self._domain.number
+                _say_that_time_differs(f"another program in ROS domain {number}", "it is")
             # Not threading's: a program counts its own threads.
             _thread.start_new_thread(self._listen, ())
-        is_not_alone = self._bell is not None and self._bell.ring()
-        if is_not_alone or further is not None:
+        if self._bell is not None:
+            self._rung_at = self._bell.ring()
+        if self._rung_at or further is not None:
             self._open()
+        elif not IS_POSSIBLE:
+            self._say_later(_WITHOUT_SOCKETS)
+
+    def lacks_zenoh(self) -> bool:
+        """Whether other processes are there, but not reached because Zenoh is not installed."""
+        from importlib.util import find_spec
+
+        return self._rung_at > 0 and self._link is None and find_spec("zenoh") is None
+
+    def knows_everybody(self) -> bool:
+        """Whether the graph has everybody who was there before this process, as far as that can be known.
+
+        That takes a moment: other processes may still open their sessions. Machines in the subnet, and those
+        that a file of Zenoh's configuration reaches, may always be more.
+        """
+        link, transport, further = self._link, self._transport, self._environment
+        if link is None or transport is None:
+            return not self._has_begun  # alone; or without Zenoh, a router or a session
+        if further is not None and not further.routers:
+            return False
+        announced = transport.announced(0 if further else self._rung_at)
+        return announced is not None and all(link.others.get(gid) for gid in announced)
+
+    def stay_apart(self) -> None:
+        """Reach nobody, because of a virtual clock. Whoever comes second says so."""
+        if not IS_POSSIBLE:
+            return
+        with suppress(TransportError):
+            self._bell = Doorbell(self._domain.number, CLOCK)
+            if self._bell.is_beside(BELL, CLOCK):
+                others = f"others in ROS domain {self._domain.number} are"
+                _say_that_time_differs("this program", others)
 
     def end(self) -> None:
         """Leave."""
@@ -96,6 +145,8 @@ class Reach:
             self._bell.abandon()
         if self._link is not None:
             self._link.forget()
+        if self._transport is not None:
+            _inherited_sessions.append(self._transport)
         _inherited.append(self)
         self._domain.reach = None
 
@@ -111,14 +162,16 @@ class Reach:
                 return
             self._has_begun = True
         further = self._environment
-        if further is None or not further.routers:
-            if self._attempt() and further is not None:
-                self._wait_for_router(further.router_checks)
+        if further is None or not further.expects_router:
+            self._attempt()
         elif not self._attempts(range(further.router_checks)):
-            _thread.start_new_thread(self._attempts, (itertools.count(1),))  # the program goes on meanwhile
+            # The program goes on meanwhile.
+            _thread.start_new_thread(self._attempts, (itertools.count(further.router_checks),))
+        elif further.config_file:  # sessions by it may open before there is a router
+            self._wait_for_router(further.router_checks)
 
     def _attempts(self, numbers: Iterable[int]) -> bool:
-        """Try to open a session, which needs a router, again and again; returns whether that is done."""
+        """Try to open a session, which may need a router, again and again; returns whether that is done."""
         for attempt in numbers:
             if attempt:
                 time.sleep(_CHECK_EVERY)
@@ -134,7 +187,11 @@ class Reach:
             try:
                 self._link = self._opened()
             except ModuleNotFoundError:
-                _thread.start_new_thread(self._say_what_is_missing, ())
+                from ifgen_runtime.installation import add_extra
+
+                self._say_later(f"without Zenoh. Install it: {add_extra('net')}")
+            except ConfigurationError as error:
+                say(f"other processes are not reached: {error}")
             except TransportError as error:
                 self._say_why_not(error)
                 return False
@@ -150,7 +207,9 @@ class Reach:
         listen, connect = ([bell.endpoint], bell.others()) if bell is not None else ([], [])
         settings = self._environment or Environment()
         self._transport = ZenohTransport(
-            self._domain.number, lambda: configuration(settings, listen, connect)
+            self._domain.number,
+            lambda: configuration(settings, listen, connect),
+            is_private=settings.is_private,
         )
         link = Link(self._domain, self._transport)
         link.open()
@@ -160,7 +219,7 @@ class Reach:
         """Look for a router as often as that, and say each time that there is none."""
         for check in range(checks):
             time.sleep(_CHECK_EVERY if check else _CONNECTING)
-            if self._transport is None or self._transport.knows_router():
+            if self._link is None or self._transport is None or self._transport.knows_router():
                 return
             say("no Zenoh router is connected: is one running, and is its address right?")
 
@@ -168,20 +227,29 @@ class Reach:
         if self._has_said:
             return
         self._has_said = True
-        routers = self._environment.routers if self._environment is not None else ()
-        until = f" until there is a router at {' or '.join(routers)}" if routers else ""
+        further, until = self._environment, ""
+        if further is not None and further.config_file:
+            until = f" until there is a router as {further.config_file} says"
+        elif further is not None and further.routers:
+            until = f" until there is a router at {' or '.join(further.routers)}"
         say(f"other processes are not reached{until}: {error}")
 
-    def _say_what_is_missing(self) -> None:
-        from ifgen_runtime.installation import add_extra
+    def _say_later(self, why: str) -> None:
+        """Say why other processes are not reached, once an endpoint waits for somebody."""
+        _thread.start_new_thread(self._say_if_lonely, (why,))
 
+    def _say_if_lonely(self, why: str) -> None:
         time.sleep(_PATIENCE)
         lonely = _unmatched(self._domain)
         if lonely:
-            say(
-                f"{lonely} has no counterpart in this process, and other processes are not reached without "
-                f"Zenoh. Install it: {add_extra('net')}"
-            )
+            say(f"{lonely} has no counterpart in this process, and other processes are not reached {why}")
+
+
+def _say_that_time_differs(who: str, whom: str) -> None:
+    say(
+        f"{who} runs on a virtual clock, so {whom} not reached: start them together in lockstep, with `ifgen "
+        "run --lockstep`, or set ROS_AUTOMATIC_DISCOVERY_RANGE=OFF for one that is to be alone"
+    )
 
 
 def _environment() -> Environment | None:
@@ -224,9 +292,11 @@ def _forget() -> None:
     for reach in Reach.all:
         reach.forget()
     Reach.all.clear()
+    forget_domains()
 
 
 _inherited: list[Reach] = []  # What would end with an object, such as a session, must not end in a fork.
+_inherited_sessions: list[object] = []  # A fork has none of Zenoh's threads; opening a session hangs there.
 atexit.register(_leave)
 if hasattr(os, "register_at_fork"):
     os.register_at_fork(after_in_child=_forget)

@@ -7,15 +7,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from rmw_local.drops import Drops
 from rmw_local.graph import GraphNode, Participant
 from rmw_local.message import Elsewhere, MessageType, ServiceType
+from rmw_local.notices import Drops
 from rmw_local.reader import Reader
 from rmw_local.service import ServiceClient, ServiceQos, ServiceServer
+from rmw_local.transports.arrivals import Arrivals
+from rmw_local.transports.seam import Receipt
 from rmw_local.writer import Writer
 
 if TYPE_CHECKING:
-    from rmw_local.graph import Domain
+    from rmw_local.domain import Domain
     from rmw_local.transports.seam import Entity
 
 
@@ -71,6 +73,26 @@ class RemoteWriter(Writer):
         kind = RemoteType(entity.type_name, entity.type_hash)
         super().__init__(node, kind, entity.name, entity.qos)
         self.gid = entity.gid
+        self._arrivals: dict[Reader, Arrivals] = {}
+
+    def note_arrival(self, reader: Reader, number: int) -> None:
+        """Note that a message has come to a matched reader, and count those that must have been lost."""
+        arrivals = self._arrivals.get(reader)
+        if arrivals is None:
+            self._arrivals[reader] = Arrivals(number)
+        elif lost := arrivals.note(number):
+            reader.message_lost.add(lost)
+            reader.message_lost.notify()
+
+    def receipt(self, reader: Reader, gid: bytes) -> Receipt:
+        """Return what a matched reader has got, which its process has announced with this gid."""
+        arrivals = self._arrivals.get(reader)
+        return Receipt(gid, 0, 0) if arrivals is None else Receipt(gid, arrivals.last, arrivals.newest_lost)
+
+    def disconnect(self, reader: Reader) -> None:
+        """Part from a reader: what comes when they meet again has no connection with what came before."""
+        super().disconnect(reader)
+        self._arrivals.pop(reader, None)
 
     def note_life(self) -> None:
         """Note that it has published, or said that it is alive."""
@@ -86,6 +108,7 @@ class RemoteReader(Reader):
     def __init__(self, node: RemoteNode, entity: Entity) -> None:
         kind = RemoteType(entity.type_name, entity.type_hash)
         super().__init__(node, kind, entity.name, entity.qos)
+        self.peer = entity.peer
         self.gid = entity.gid
         self.stands_in = entity.stands_in
 
@@ -98,6 +121,7 @@ class RemoteClient(ServiceClient):
     def __init__(self, node: RemoteNode, entity: Entity) -> None:
         super().__init__(node, _service_type(entity), entity.name, ServiceQos(entity.qos, entity.qos))
         self.gid = entity.gid
+        self.refuses = entity.refuses
 
 
 class RemoteServer(ServiceServer):
@@ -107,7 +131,10 @@ class RemoteServer(ServiceServer):
 
     def __init__(self, node: RemoteNode, entity: Entity) -> None:
         super().__init__(node, _service_type(entity), entity.name, ServiceQos(entity.qos, entity.qos))
+        self.peer = entity.peer
         self.gid = entity.gid
+        self.stands_in = entity.stands_in
+        self.refuses = entity.refuses
 
 
 def _service_type(entity: Entity) -> RemoteServiceType:

@@ -11,16 +11,15 @@ from weakref import WeakKeyDictionary
 from rmw_local.notices import say
 
 if TYPE_CHECKING:
-    from rmw_local.encounter import Encounter
-    from rmw_local.graph import Domain, GraphNode
+    from rmw_local.domain import Domain
+    from rmw_local.graph import GraphNode
+    from rmw_local.mismatch.encounter import Encounter
     from rmw_local.transports.asking import Asker
+    from rmw_local.transports.background import Background
     from rmw_local.transports.seam import Transport
 
 _MOST_UNTOLD: Final = 1000
 """The number of encounters with other definitions that wait to be told of."""
-
-_FAREWELL: Final = 2.0
-"""Seconds that the end of a process waits for a warning that is being made."""
 
 
 class Teller:
@@ -29,10 +28,10 @@ class Teller:
     It is a thread of its own because listeners and loggers are code of users, and answers take time.
     """
 
-    def __init__(self, domain: Domain, transport: Transport) -> None:
+    def __init__(self, domain: Domain, transport: Transport, background: Background) -> None:
+        self._background = background
         self._untold: deque[Encounter] = deque(maxlen=_MOST_UNTOLD)
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
-        self._working = _thread.allocate_lock()  # while there is a thread
         self._is_telling = self._is_over = False
         self._asker: Asker | None = None  # once there is something to ask
         self._domain = domain
@@ -47,17 +46,11 @@ class Teller:
             begins = bool(self._untold) and not (self._is_telling or self._is_over)
             self._is_telling = self._is_telling or begins
         if begins:
-            _thread.start_new_thread(self._work, ())
+            self._background.start(self._tell)
 
     def close(self) -> None:
-        """Say nothing more. A warning that is being made is finished, unless it takes long."""
+        """Say nothing more, once the warning that is being made is finished."""
         self._is_over = True
-        if self._working.acquire(timeout=_FAREWELL):
-            self._working.release()
-
-    def _work(self) -> None:
-        with self._working:
-            self._tell()
 
     def _tell(self) -> None:
         from rmw_local.transports.asking import Asker  # late, and here: definitions hardly ever differ
@@ -77,7 +70,7 @@ class Teller:
         return batch
 
     def _tell_of(self, encounter: Encounter, asker: Asker) -> None:
-        from rmw_local.telling import tell_of  # late: only nodes that differ need it
+        from rmw_local.mismatch.telling import tell_of  # late: only nodes that differ need it
 
         if self._is_over or encounter.mine.node.participant.has_ended:
             return
@@ -88,7 +81,7 @@ class Teller:
 
     def _without_repetitions(self, batch: Iterable[Encounter]) -> Iterator[Encounter]:
         """All but further parts of an action whose two nodes have been told of."""
-        from rmw_local.telling import part_of_action  # late: as above
+        from rmw_local.mismatch.telling import part_of_action  # late: as above
 
         for encounter in sorted(batch, key=lambda each: part_of_action(each)[1]):
             action, _ = part_of_action(encounter)

@@ -84,17 +84,17 @@ class ActionClient(ActionEntity):
         return self._result.send_request(pyrequest)
 
     def take_goal_response(self, pymsg_type: type[Any]) -> tuple[int | None, Any]:
-        """Take (number of the request, response); (None, None) if there is none."""
+        """Take (number of the request, response or failure); (None, None) if there is none."""
         self._must_live("Failed to take goal")
         return _take_response(self._goal, pymsg_type)
 
     def take_cancel_response(self, pymsg_type: type[Any]) -> tuple[int | None, Any]:
-        """Take (number of the request, response); (None, None) if there is none."""
+        """Take (number of the request, response or failure); (None, None) if there is none."""
         self._must_live("Failed to take cancel")
         return _take_response(self._cancel, pymsg_type)
 
     def take_result_response(self, pymsg_type: type[Any]) -> tuple[int | None, Any]:
-        """Take (number of the request, response); (None, None) if there is none."""
+        """Take (number of the request, response or failure); (None, None) if there is none."""
         self._must_live("Failed to take result")
         return _take_response(self._result, pymsg_type)
 
@@ -125,6 +125,8 @@ class ActionClient(ActionEntity):
 
 def _take_response(client: Client, pymsg_type: type[Any]) -> tuple[int | None, Any]:
     header, response = client.take_response(pymsg_type)
+    if header is None:
+        header, response = client.take_failure()
     return (None, None) if header is None else (header.request_id.sequence_number, response)
 
 

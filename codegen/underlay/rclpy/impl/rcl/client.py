@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from ifgen_runtime.errors import ServerGoneError
 from rmw_local.graph import TypeConflictError
 from rmw_local.message import service_type
 from rmw_local.qos import unknown_policy
@@ -77,6 +78,15 @@ class Client(SourceHandle, EndpointHandle):
         if self._introspection is not None:
             self._introspection.record(RESPONSE_RECEIVED, gid, number, response=response)
         return rmw_service_info_t(stamp, stamp, rmw_request_id_t(number, gid)), response
+
+    def take_failure(self) -> tuple[rmw_service_info_t, ServerGoneError] | tuple[None, None]:
+        """Take the header of a request that nobody will answer, with the reason; (None, None) if none is."""
+        failure = self._client.take_failure()
+        if failure is None:
+            return None, None
+        number, reason = failure
+        request = rmw_request_id_t(number, self._client.gid)
+        return rmw_service_info_t(0, 0, request), ServerGoneError(reason)
 
     def configure_introspection(
         self,

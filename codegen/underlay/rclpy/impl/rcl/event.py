@@ -55,9 +55,8 @@ _SUBSCRIPTION_EVENTS: dict[_SubscriptionEvent, tuple[Callable[[Any], Any], Calla
         lambda reader: reader.incompatible_qos,
         _qos_status,
     ),
-    # In one process nothing gets lost on the way: this status exists and never changes.
     _SubscriptionEvent.RCL_SUBSCRIPTION_MESSAGE_LOST: (
-        lambda _: Status(),
+        lambda reader: reader.message_lost,
         structs.rmw_message_lost_status_t,
     ),
     _SubscriptionEvent.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: (

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from rmw_local.domain import Domain
 from rmw_local.endpoint import Endpoint
-from rmw_local.graph import Domain
 from rmw_local.message import MessageType
 from rmw_local.qos import HISTORY_UNKNOWN, QosProfile
 from rmw_local.service import ServiceEndpoint
@@ -48,7 +48,8 @@ class _Snapshot:
             topics, services = list(domain.topics.values()), list(domain.services.values())
             self.writers = [writer for topic in topics for writer in topic.writers]
             self.readers = [reader for topic in topics for reader in topic.readers if not reader.stands_in]
-            self.servers = [server for service in services for server in service.servers]
+            servers = [server for service in services for server in service.servers]
+            self.servers = [server for server in servers if not server.stands_in]
             self.clients = [client for service in services for client in service.clients]
 
 
@@ -245,6 +246,19 @@ def whole_profiles(node: Node) -> dict[tuple[int, ...], dict[str, Any]]:
     """Return the keyword arguments of a QoSProfile for each end of a topic by gid: also what DDS hides."""
     graph = _Snapshot(node, "Failed to get information about topics")
     return {tuple(each.gid): profile_dict(each.qos) for each in (*graph.writers, *graph.readers)}
+
+
+def service_types(node: Node, service_name: str) -> list[tuple[str, str, str]]:
+    """Return (full name of the node, type, type hash) of each server of a full service name.
+
+    Jazzy has no function that says so: DDS knows the hashes of requests and responses only.
+    """
+    graph = _Snapshot(node, "Failed to get information about services")
+    return [
+        (server.node.full_name, server.service_type.name, server.service_type.type_hash)
+        for server in graph.servers
+        if server.name == service_name
+    ]
 
 
 def node_names(node: Node) -> list[tuple[str, str, str]]:

@@ -70,8 +70,8 @@ class Publisher(EndpointHandle):
         self._writer.publish_bytes(data)
 
     def wait_for_all_acked(self, pytimeout: rcl_duration_t) -> bool:
-        """Return True: when publishing returns, every matched subscription has the message."""
-        return True
+        """Wait until reliable subscriptions in other processes have everything; those in this one have it."""
+        return bool(self._writer.wait_until_received(pytimeout.nanoseconds))
 
     def assert_liveliness(self) -> None:
         """Say that the publisher lives, for one more lease."""

@@ -14,7 +14,7 @@ from .errors import RCLError
 from .qos import profile_of
 
 if TYPE_CHECKING:
-    from rmw_local.origin import Origin
+    from rmw_local.mismatch.origin import Origin
 
 MessageInfo = dict[str, int | None]
 # A message (or its bytes), its source stamp [ns, system time], its number among its publisher's messages, the

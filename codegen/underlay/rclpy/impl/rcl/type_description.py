@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from rmw_local.graph import endpoints
+from rmw_local.domain import endpoints
 
 from .destroyable import Destroyable
 from .node import Node

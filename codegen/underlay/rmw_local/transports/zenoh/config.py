@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import _socket  # socket itself takes 3 ms to import
 import json
+import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import zenoh
 
 from rmw_local.notices import say
-from rmw_local.transports.errors import TransportError
+from rmw_local.transports.errors import ConfigurationError
+from rmw_local.transports.zenoh.wording import place, reason
 
 if TYPE_CHECKING:
     from rmw_local.transports.environment import Environment
@@ -26,16 +30,29 @@ _OURS: Final[dict[str, object]] = {
     "connect/timeout_ms": {"peer": 10_000},
     "connect/exit_on_failure": False,
     "connect/retry": {"period_init_ms": 20, "period_max_ms": 1000, "period_increase_factor": 2},
+    # Ours is in `lending`. With Zenoh's, a receiver that may not lock more memory loses messages without
+    # a word, and the memory of every sender stays mapped when that is gone.
+    "transport/shared_memory/enabled": False,
     "timestamping/enabled": True,  # transient local needs it
     "queries_default_timeout": 600_000,
     "transport/link/tx/queue/size/data": 16,  # batches of 64 kB: bursts of keep-last messages are not lost
 }
 
+_WAIT: Final = 20_000
+"""Microseconds, once, for a full connection: bursts arrive that a keep-last history has room for."""
+_ON_THIS_MACHINE: Final = "unixsock-stream"
+_OF_OTHERS: Final = ("connect", "listen", "mode", "scouting")
+"""Parts of the configuration that say who is to be found."""
+_FILES: Final = tuple(
+    f"transport/link/tls/{name}"
+    for name in ("root_ca_certificate", "connect_certificate", "connect_private_key")
+)
+
 
 def configuration(environment: Environment, listen: Sequence[str], connect: Sequence[str]) -> zenoh.Config:
     """The configuration of a session that listens and connects to these endpoints besides.
 
-    Raises TransportError if the user's file cannot be used.
+    Raises ConfigurationError if the user's file, or one that it names, cannot be used.
     """
     if environment.config_file:
         config = _from_file(environment.config_file)
@@ -44,7 +61,7 @@ def configuration(environment: Environment, listen: Sequence[str], connect: Sequ
         settings = dict(_OURS)
         if environment.subnet:
             settings["scouting/multicast/enabled"] = True
-            listen = [*listen, "tcp/[::]:0"]
+            listen = [*listen, _everywhere()]
         settings["listen/endpoints"] = list(listen)
         settings["connect/endpoints"] = list(connect)
         if environment.routers:
@@ -53,18 +70,45 @@ def configuration(environment: Environment, listen: Sequence[str], connect: Sequ
             settings["connect/timeout_ms"] = 1000
             settings["listen/endpoints"] = []
             settings["connect/endpoints"] = list(environment.routers)
+        elif not _leaves_the_machine(environment):
+            # Peers tell each other of other peers, also one that has met peers elsewhere.
+            settings["transport/link/protocols"] = [_ON_THIS_MACHINE]
+            settings["transport/link/tx/queue/congestion_control/drop/wait_before_drop"] = _WAIT
         for path, value in settings.items():
             config.insert_json5(path, json.dumps(value))
     for path, text in environment.overrides:
         try:
             config.insert_json5(path, text)
         except zenoh.ZError as error:
-            say(f"ZENOH_CONFIG_OVERRIDE: {path}={text} is ignored: {error}")
+            say(f"ZENOH_CONFIG_OVERRIDE: {path}={text} is ignored: {reason(error)}")
+    _check_files(config)
     return config
+
+
+def _everywhere() -> str:
+    """The endpoint of all interfaces; a kernel without IPv6 has another one."""
+    try:
+        _socket.socket(_socket.AF_INET6).close()
+    except OSError:
+        return "tcp/0.0.0.0:0"
+    return "tcp/[::]:0"
+
+
+def _leaves_the_machine(environment: Environment) -> bool:
+    return environment.subnet or any(path.startswith(_OF_OTHERS) for path, _ in environment.overrides)
 
 
 def _from_file(file: str) -> zenoh.Config:
     try:
         return zenoh.Config.from_file(file.removeprefix("file://"))
     except zenoh.ZError as error:
-        raise TransportError(f"ZENOH_SESSION_CONFIG_URI: {file} cannot be used: {error}") from None
+        where = f"ZENOH_SESSION_CONFIG_URI: {file}{place(error)}"
+        raise ConfigurationError(f"{where} cannot be used: {reason(error)}") from None
+
+
+def _check_files(config: zenoh.Config) -> None:
+    """Raise ConfigurationError for a file of TLS that is missing: Zenoh only says that it cannot connect."""
+    for path in _FILES:
+        file = json.loads(config.get_json(path))
+        if file and not os.access(file, os.R_OK):
+            raise ConfigurationError(f"{path}: there is no file {file!r} that can be read in {Path.cwd()}")

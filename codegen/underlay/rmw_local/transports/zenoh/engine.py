@@ -1,20 +1,16 @@
-"""The transport: one Zenoh session, with a token for each entity.
-
-Callbacks run on Zenoh's own threads (`indirect=False`): a thread of Python for them would keep the
-interpreter from ending. They queue and wake, nothing else.
-"""
+"""The transport: one Zenoh session, with a token for each entity."""
 
 from __future__ import annotations
 
-import _thread
-import secrets
+import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
 from functools import partial
 from typing import Any, Final
 
 import zenoh
-from zenoh import CongestionControl, ConsolidationMode, Locality, QueryTarget, Reliability, SampleKind
+from zenoh import CongestionControl, Locality, Reliability, SampleKind
 from zenoh.ext import (
     CacheConfig,
     HistoryConfig,
@@ -23,76 +19,179 @@ from zenoh.ext import (
     declare_advanced_publisher,
     declare_advanced_subscriber,
 )
-from zenoh.handlers import Callback, FifoChannel
+from zenoh.handlers import FifoChannel
 
 from rmw_local.notices import Repeated
 from rmw_local.qos import KEEP_ALL, RELIABLE, TRANSIENT_LOCAL, QosProfile
+from rmw_local.transports.background import Background
 from rmw_local.transports.errors import TransportError
-from rmw_local.transports.seam import Entity, OnEntity, OnReply, OnRequest, OnSample
-from rmw_local.transports.zenoh import attachments, tokens
-from rmw_local.transports.zenoh.keys import alive_key, data_key
+from rmw_local.transports.seam import (
+    Ask,
+    Audience,
+    Entity,
+    Kind,
+    OnEntity,
+    OnOver,
+    OnQuestion,
+    OnReceipts,
+    OnReply,
+    OnRequest,
+    OnSample,
+    Receipt,
+)
+from rmw_local.transports.zenoh import attachments, receipts, services, statistics, tokens
+from rmw_local.transports.zenoh.calls import Calls
+from rmw_local.transports.zenoh.keys import alive_key, data_key, receipts_key, settled_key, statistics_key
+from rmw_local.transports.zenoh.lending import Lending
+from rmw_local.transports.zenoh.presence import PATIENCE, Gate, Presence
+from rmw_local.transports.zenoh.publication import Publication
+from rmw_local.transports.zenoh.services import Asking, Queried, Questions, Serving
+from rmw_local.transports.zenoh.wording import reason
 
 _KEPT_OF_ALL: Final = 10_000
 """The number of messages that are kept for late joiners where the history is "keep all"."""
-_MOST_REQUESTS: Final = 10_000
-"""The number of requests of one service that may wait for their responses."""
+_MOST_TOKENS: Final = 100_000
+"""The number of announcements that wait: Zenoh hands them over before anybody can look, and stops for good
+where there is no room.
+"""
 _MOST_ANSWERS: Final = 256
 """The number of answers to an inquiry that wait: more would hold up Zenoh until somebody looks."""
-_TO_SERVERS: Final[dict[str, Any]] = {
-    "target": QueryTarget.ALL_COMPLETE,
-    "consolidation": ConsolidationMode.NONE,
-    "allowed_destination": Locality.REMOTE,
-}
 _HEARTBEAT: Final = 0.5  # [s], of transient local publishers
-_RESULT_SERVICE: Final = "/_action/get_result"
-_MOST_TRIES: Final = 500
-_BETWEEN_TRIES: Final = 0.001  # [s]
-_NO_END: Final = 100 * 365 * 86_400.0  # [s]
+_PATIENCE: Final = 1.0  # [s], for what others have announced
+_RUNTIME: Final = "(net: (worker_threads: 16))"
+"""Zenoh's threads.
+
+Zenoh's Python package undeclares a publisher that has a heartbeat while it holds the interpreter: it waits
+for the task of that heartbeat, and the task for a thread. Zenoh has one such thread. Whenever a peer was
+leaving at that moment, that thread waited for the interpreter, in a callback of ours, and both for 10 s. With
+more threads, it takes as many peers that leave at once. They cost nothing while they wait.
+"""
 
 
 class ZenohTransport:
-    """A `rmw_local.transports.seam.Transport`. The configuration is made when the session opens."""
+    """A `rmw_local.transports.seam.Transport`. The configuration is made when the session opens.
 
-    def __init__(self, domain: int, configuration: Callable[[], zenoh.Config]) -> None:
+    `is_private` says that it connects this user's processes on this machine, and nobody else.
+    """
+
+    def __init__(
+        self, domain: int, configuration: Callable[[], zenoh.Config], *, is_private: bool = False
+    ) -> None:
         self.malformed = Repeated("dropped {count} malformed message{s} from another process: {why}")
+        self._gate = Gate()
+        self._background = Background()
         self._domain = domain
         self._configuration = configuration
+        self._is_private = is_private
+        self._questions: list[Questions] = []
 
     def open(self, on_entity: OnEntity, on_alive: Callable[[bytes], None]) -> None:
         """Open the session and follow the graph."""
         try:
-            self._session = zenoh.open(self._configuration())
+            with _threads():
+                self._session = zenoh.open(self._configuration())
         except zenoh.ZError as error:
-            reason = str(error).partition(" at /")[0]  # without the place in Zenoh's sources
-            raise TransportError(f"Zenoh says: {reason.strip()}") from None
+            raise TransportError(f"Zenoh says: {reason(error)}") from None
         self._id = str(self._session.zid())
         self._liveliness = self._session.liveliness()
-        self._followed = [
+        self._lending = Lending(self._session, self._gate, self._background, self._domain, self.malformed)
+        self._calls = Calls(self._session, self._gate, self._background, self._domain, self.malformed)
+        if self._is_private:
+            self._calls.begin()
+        self._followed: list[Any] = [
             self._liveliness.declare_subscriber(
                 tokens.pattern(self._domain),
-                Callback(partial(self._on_token, on_entity), indirect=False),
+                self._gate.callback(self._on_token, on_entity),
                 history=True,
             ),
             self._session.declare_subscriber(
                 alive_key(self._domain, "*"),
-                Callback(partial(self._on_alive, on_alive), indirect=False),
+                self._gate.callback(self._on_alive, on_alive),
                 allowed_origin=Locality.REMOTE,
             ),
         ]
 
     def close(self) -> None:
-        """Close the session."""
+        """Close the session, and wait for the threads that are using it."""
+        self._calls.end()
+        self._gate.shut()
+        self._lending.finish()
+        self._background.end(PATIENCE)
         self._session.close()  # type: ignore[no-untyped-call]  # its stub has no return type
+        self._lending.close()
+        self._gate.wait()
 
     def knows_router(self) -> bool:
         """Whether a router is connected."""
-        return bool(self._session.info.routers_zid())
+        found: list[object] = []
+        self._gate.call(lambda: found.extend(self._session.info.routers_zid()))
+        return bool(found)
 
-    def announce(self, node: Entity) -> _Presence:
+    def announced(self, peers: int) -> list[bytes] | None:
+        """Ask all others for what they have announced, and return the gids; a moment later, all have come.
+
+        None if fewer than that many processes have settled, or if no peer and no router is connected, or if
+        they are late.
+        """
+        answers: list[str] | None = None
+
+        def ask() -> None:
+            nonlocal answers
+            if self._session.info.peers_zid() or self._session.info.routers_zid():
+                settled = self._tokens(settled_key(self._domain, "*"))
+                own = settled_key(self._domain, self._id)
+                if settled is not None and len({*settled} - {own}) >= peers:
+                    answers = self._tokens(tokens.pattern(self._domain))
+
+        self._gate.call(ask)
+        if answers is None:
+            return None
+        return [tokens.gid_of(token) for token in answers if tokens.session_of(token) != self._id]
+
+    def _tokens(self, pattern: str) -> list[str] | None:
+        """The tokens that others and this process have declared; None if some may be missing."""
+        channel: Any = FifoChannel(_MOST_TOKENS)
+        end = time.monotonic() + _PATIENCE
+        replies = list(self._liveliness.get(pattern, channel, timeout=_PATIENCE))
+        if time.monotonic() > end:
+            return None
+        return [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
+
+    def settle(self) -> None:
+        """Declare one more token: others learn of tokens in the order in which they were declared."""
+        self._followed.append(self._liveliness.declare_token(settled_key(self._domain, self._id)))
+
+    def acknowledge(self, on_receipts: OnReceipts) -> None:
+        """Declare a queryable for all publishers of others."""
+        self._followed.append(
+            self._session.declare_queryable(
+                receipts_key(self._domain, self._id),
+                self._gate.callback(self._on_question, on_receipts),
+                complete=True,
+                allowed_origin=Locality.REMOTE,
+            )
+        )
+
+    def offer(self, on_question: OnQuestion) -> None:
+        """Declare a queryable for whoever asks."""
+        key = statistics_key(self._domain, self._id)
+        self._followed.append(
+            self._session.declare_queryable(
+                key,
+                self._gate.callback(statistics.answer, on_question, key),
+                allowed_origin=Locality.REMOTE,
+            )
+        )
+
+    def survey(self, patience: float) -> Callable[[], Iterable[bytes]]:
+        """Send one query to all processes."""
+        return statistics.ask(self._gate, self._session, statistics_key(self._domain, "*"), patience)
+
+    def announce(self, node: Entity) -> Presence:
         """Declare a node's token."""
-        return _Presence(*self._token(node))
+        return Presence(self._gate, *self._token(node))
 
-    def publish(self, publisher: Entity) -> _Publication:
+    def publish(self, publisher: Entity, audience: Audience) -> Publication:
         """Declare a publisher, for a transient local one also what keeps its messages."""
         qos, key = publisher.qos, self._key(publisher)
         options: dict[str, Any] = {
@@ -111,12 +210,17 @@ class ZenohTransport:
         else:
             declared = self._session.declare_publisher(key, **options)
         token, gid = self._token(publisher)
-        return _Publication(token, gid, declared, partial(self._say_alive, gid))
+        say_alive, ask = partial(self._say_alive, gid), partial(self._receipts, gid)
+        publication = Publication(self._gate, token, gid, declared, say_alive, ask)
+        if qos.durability != TRANSIENT_LOCAL:  # what is kept for late joiners would stay lent
+            lend = partial(self._lending.lend, key, audience, options["congestion_control"])
+            publication.shorten(lend, self._lending.threshold)
+        return publication
 
-    def subscribe(self, subscription: Entity, on_sample: OnSample) -> _Presence:
+    def subscribe(self, subscription: Entity, on_sample: OnSample) -> Presence:
         """Declare a subscriber, for a transient local one also what asks for earlier messages."""
         qos, key = subscription.qos, self._key(subscription)
-        handler = Callback(partial(self._on_sample, on_sample), indirect=False)
+        handler = self._gate.callback(self._on_sample, on_sample)
         declared: Any
         if qos.durability == TRANSIENT_LOCAL:
             reliable = qos.reliability == RELIABLE
@@ -131,38 +235,51 @@ class ZenohTransport:
             )
         else:
             declared = self._session.declare_subscriber(key, handler, allowed_origin=Locality.REMOTE)
-        return _Presence(*self._token(subscription), declared)
+        token = self._written(subscription)
+        listening = self._lending.listen(tokens.gid_of(token), on_sample)
+        return Presence(self._gate, *self._declared(token), declared, listening)
 
-    def ask(self, client: Entity, on_reply: OnReply) -> _Asking:
+    def ask(self, client: Entity, on_reply: OnReply, on_over: OnOver) -> Asking:
         """Declare a client's token."""
         token, gid = self._token(client)
-        endless = client.name.endswith(_RESULT_SERVICE)
-        handler = partial(self._on_reply, on_reply, gid)
-        return _Asking(token, gid, self._session, self._key(client), handler, _NO_END if endless else None)
+        ask = self.ask_also(client, gid, on_reply, on_over)
+        caller = self._calls.caller(gid, on_reply, on_over)
+        return Asking(self._questions, self._gate, token, gid, ask, caller, self._calls)
+
+    def ask_also(self, client: Entity, gid: bytes, on_reply: OnReply, on_over: OnOver) -> Ask:
+        """Declare nothing: a query needs a key only."""
+        patience = services.patience(client.name)
+        get = partial(self._session.get, self._key(client), timeout=patience, **services.TO_SERVERS)
+        replied = partial(self._on_reply, on_reply, gid)
+        return Questions(
+            self._questions, client.name, self._gate, self._background, gid, get, replied, on_over
+        ).ask
 
     def inquire(self, server: Entity, data: bytes, patience: float) -> Callable[[], Iterable[bytes]]:
         """Send a query under a gid that nobody else has seen."""
-        gid = secrets.token_bytes(attachments.GID)
+        gid = os.urandom(attachments.GID)  # secrets would cost 4 MB
         attachment = attachments.pack(1, time.time_ns(), gid)
         # A channel has no code of Python. A callback that Zenoh's threads drop while Python ends is fatal.
         channel: Any = FifoChannel(_MOST_ANSWERS)
         key = self._key(server)
         try:
             replies = self._session.get(
-                key, channel, payload=data, attachment=attachment, timeout=patience, **_TO_SERVERS
+                key, channel, payload=data, attachment=attachment, timeout=patience, **services.TO_SERVERS
             )
         except zenoh.ZError:  # closed meanwhile
             return tuple
         return partial(self._answers, replies, gid)
 
-    def serve(self, server: Entity, on_request: OnRequest) -> _Serving:
+    def serve(self, server: Entity, on_request: OnRequest) -> Serving:
         """Declare a queryable."""
-        serving = _Serving(self._key(server))
-        handler = Callback(partial(self._on_request, on_request, serving), indirect=False)
+        serving, key = Serving(self._gate), self._key(server)
+        handler = self._gate.callback(self._on_request, on_request, serving, key)
         declared = self._session.declare_queryable(
-            self._key(server), handler, complete=True, allowed_origin=Locality.REMOTE
+            key, handler, complete=True, allowed_origin=Locality.REMOTE
         )
-        serving.follow(*self._token(server), declared)
+        token = self._written(server)
+        listed = self._calls.serve(tokens.gid_of(token), serving, on_request)
+        serving.follow(*self._declared(token), declared, listed)
         return serving
 
     def _key(self, endpoint: Entity) -> str:
@@ -170,11 +287,16 @@ class ZenohTransport:
 
     def _token(self, entity: Entity) -> tuple[zenoh.LivelinessToken, bytes]:
         """Declare a token, after what it tells of; returns it with the gid."""
-        text = tokens.write(self._domain, self._id, entity)
-        return self._liveliness.declare_token(text), tokens.gid_of(text)
+        return self._declared(self._written(entity))
+
+    def _written(self, entity: Entity) -> str:
+        return tokens.write(self._domain, self._id, entity)
+
+    def _declared(self, token: str) -> tuple[zenoh.LivelinessToken, bytes]:
+        return self._liveliness.declare_token(token), tokens.gid_of(token)
 
     def _say_alive(self, gid: bytes) -> None:
-        _quietly(lambda: self._session.put(alive_key(self._domain, gid.hex()), b""))
+        self._gate.call(lambda: self._session.put(alive_key(self._domain, gid.hex()), b""))
 
     # Callbacks, on Zenoh's threads
 
@@ -187,7 +309,14 @@ class ZenohTransport:
         except ValueError as error:
             self.malformed.add(str(error))
             return
-        on_entity(entity, sample.kind == SampleKind.PUT)
+        appeared = sample.kind == SampleKind.PUT
+        if entity.kind is Kind.NODE and not appeared:
+            self._lending.bury(entity.peer)
+        on_entity(entity, appeared)
+        if entity.kind is Kind.SERVER and not appeared:
+            for questions in tuple(self._questions):
+                if questions.service == entity.name:
+                    questions.lose_server()
 
     def _on_alive(self, on_alive: Callable[[bytes], None], sample: zenoh.Sample) -> None:
         digits = str(sample.key_expr).rpartition("/")[2]
@@ -195,6 +324,20 @@ class ZenohTransport:
             on_alive(bytes.fromhex(digits))
         except ValueError as error:
             self.malformed.add(str(error))
+
+    def _on_question(self, on_receipts: OnReceipts, query: zenoh.Query) -> None:
+        try:
+            receipts.answer(on_receipts, query)
+        except ValueError as error:
+            self.malformed.add(str(error))
+
+    def _receipts(self, gid: bytes, peer: str, patience: float) -> list[Receipt] | None:
+        get = partial(self._session.get, receipts_key(self._domain, peer))
+        try:
+            return receipts.ask(self._gate, get, gid, patience)
+        except ValueError as error:
+            self.malformed.add(str(error))
+            return None
 
     def _on_sample(self, on_sample: OnSample, sample: zenoh.Sample) -> None:
         if sample.kind != SampleKind.PUT:
@@ -207,16 +350,20 @@ class ZenohTransport:
         if known is not None:
             on_sample(sample.payload.to_bytes(), *known)
 
-    def _on_request(self, on_request: OnRequest, serving: _Serving, query: zenoh.Query) -> None:
+    def _on_request(self, on_request: OnRequest, serving: Serving, key: str, query: zenoh.Query) -> None:
         known = self._unpacked(query.attachment)
         payload = query.payload
-        if known is None or payload is None:
+        if known is None:
+            return
+        if payload is None:
+            self.malformed.add("a request has no data")
             return
         number, stamp, client = known
-        if serving.keep(query, client, number):
-            on_request(payload.to_bytes(), number, stamp, client)
+        refused = serving.keep(Queried(self._gate, key, query), client, number, len(payload))
+        if refused:
+            self.malformed.add(refused)
         else:
-            self.malformed.add("a request came twice, or too many wait for their responses")
+            on_request(payload.to_bytes(), number, stamp, client)
 
     def _on_reply(self, on_reply: OnReply, gid: bytes, reply: zenoh.Reply) -> None:
         sample = reply.ok
@@ -244,114 +391,17 @@ class ZenohTransport:
             return None
 
 
-class _Presence:
-    """A token, and what was declared before it. They go in the opposite order."""
-
-    def __init__(self, token: zenoh.LivelinessToken, gid: bytes, *declared: Any) -> None:
-        self.gid = gid
-        self._parts = (token, *declared)
-
-    def close(self) -> None:
-        for part in self._parts:
-            _undeclare(part)
-
-
-class _Publication(_Presence):
-    def __init__(
-        self, token: zenoh.LivelinessToken, gid: bytes, publisher: Any, assert_alive: Callable[[], None]
-    ) -> None:
-        super().__init__(token, gid, publisher)
-        self.assert_alive = assert_alive
-        self._put = publisher.put
-
-    def put(self, data: bytes, number: int, stamp: int) -> None:
-        try:
-            self._put(data, attachment=attachments.pack(number, stamp, self.gid))
-        except (zenoh.ZError, RuntimeError):
-            return  # closed meanwhile, or another thread is closing it
-
-
-class _Asking(_Presence):
-    def __init__(
-        self,
-        token: zenoh.LivelinessToken,
-        gid: bytes,
-        session: zenoh.Session,
-        key: str,
-        handler: Callable[[zenoh.Reply], None],
-        timeout: float | None,
-    ) -> None:
-        super().__init__(token, gid)
-        self._get = partial(
-            session.get,
-            key,
-            timeout=timeout,
-            **_TO_SERVERS,
-        )
-        self._handler = handler
-
-    def ask(self, data: bytes, number: int, stamp: int) -> None:
-        attachment = attachments.pack(number, stamp, self.gid)
-        handler = Callback(self._handler, indirect=False)
-        _quietly(lambda: self._get(handler, payload=data, attachment=attachment))
-
-
-class _Serving:
-    """A queryable with the queries that wait for their responses."""
-
-    gid = b""
-
-    def __init__(self, key: str) -> None:
-        self._key = key
-        self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
-        self._queries: dict[tuple[bytes, int], zenoh.Query] = {}
-        self._presence: _Presence | None = None
-
-    def follow(self, token: zenoh.LivelinessToken, gid: bytes, queryable: Any) -> None:
-        self.gid = gid
-        self._presence = _Presence(token, gid, queryable)
-
-    def keep(self, query: zenoh.Query, client: bytes, number: int) -> bool:
-        with self._lock:
-            if (client, number) in self._queries or len(self._queries) >= _MOST_REQUESTS:
-                return False
-            self._queries[client, number] = query
-        return True
-
-    def reply(self, data: bytes, number: int, stamp: int, client: bytes) -> bool:
-        with self._lock:
-            query = self._queries.pop((client, number), None)
-        if query is None:
-            return False
-        attachment = attachments.pack(number, stamp, client)
-        _quietly(lambda: query.reply(self._key, data, attachment=attachment))
-        return True
-
-    def close(self) -> None:
-        if self._presence is not None:
-            self._presence.close()
-        self._queries.clear()
-
-
-def _quietly(call: Callable[[], object]) -> None:
-    """Do something that fails if the session, or the other side, is gone meanwhile."""
-    try:
-        call()
-    except zenoh.ZError:
+@contextmanager
+def _threads() -> Generator[None]:
+    """Let Zenoh have the threads that it needs, unless the user has chosen: it looks once in a process."""
+    if "ZENOH_RUNTIME" in os.environ:
+        yield
         return
-
-
-def _undeclare(part: Any) -> None:
-    """Undeclare something, once no other thread sends by it any more."""
-    for _ in range(_MOST_TRIES):
-        try:
-            part.undeclare()
-        except zenoh.ZError:
-            return
-        except RuntimeError:  # "Already borrowed"
-            time.sleep(_BETWEEN_TRIES)
-        else:
-            return
+    os.environ["ZENOH_RUNTIME"] = _RUNTIME
+    try:
+        yield
+    finally:
+        del os.environ["ZENOH_RUNTIME"]
 
 
 def _blocks(qos: QosProfile) -> bool:

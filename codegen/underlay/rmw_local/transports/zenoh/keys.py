@@ -22,6 +22,21 @@ def alive_key(domain: int, gid: str) -> str:
     return f"@ifgen_alive/{domain}/{gid}"
 
 
+def receipts_key(domain: int, peer: str) -> str:
+    """The key on which a process says what has come to its subscriptions: ours."""
+    return f"@ifgen_receipts/{domain}/{peer}"
+
+
+def settled_key(domain: int, peer: str) -> str:
+    """The key of a token of ours that a process declares after all that was there; `peer` is * for all."""
+    return f"@ifgen_settled/{domain}/{peer}"
+
+
+def statistics_key(domain: int, peer: str) -> str:
+    """The key on which a process answers questions for its statistics: ours. `peer` is *, for all."""
+    return f"@ifgen_statistics/{domain}/{peer}"
+
+
 def dds_type(type_name: str) -> str:
     """`pkg/msg/Name` as `pkg::msg::dds_::Name_`."""
     package, kind, name = type_name.split("/")

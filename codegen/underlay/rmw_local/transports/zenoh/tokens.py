@@ -1,8 +1,9 @@
 """Liveliness tokens: the graph, a text for each node and each endpoint.
 
 `@ros2_lv/<domain>/<session>/<node id>/<entity id>/<kind>/<enclave>/<namespace>/<node>`, and for endpoints
-`/<name>/<type>/<hash>/<qos>`. What follows after that is newer than we are, and is ignored, but for our own
-`/ifgen_adapts`: another token of the same subscription, with the hash of a definition that it adapts.
+`/<name>/<type>/<hash>/<qos>`. What follows after that is newer than we are, and is ignored, but for two words
+of our own. `/ifgen_adapts` ends a further token of a subscription or a server, with the hash of a definition
+that it adapts. `/ifgen_refuses` ends the token of a client or a server that nobody is to adapt.
 """
 
 from __future__ import annotations
@@ -19,10 +20,12 @@ from rmw_local.transports.zenoh.keys import NO_HASH, dds_type, hash_of, ros_type
 
 _PREFIX: Final = "@ros2_lv"
 _STANDS_IN: Final = "ifgen_adapts"
+_REFUSES: Final = "ifgen_refuses"
 _LONGEST: Final = 2048  # characters; names of ROS have at most 255
 _NODE_PARTS, _ENDPOINT_PARTS = 9, 13
+_KIND: Final = re.compile("|".join(Kind))
 _SESSION: Final = re.compile(r"[0-9a-f]{1,32}", re.ASCII)
-_COUNTER: Final = re.compile(r"\d{1,19}", re.ASCII)
+_ID: Final = re.compile(r"\w{1,255}", re.ASCII)
 _PATH: Final = re.compile(r"/|(/[A-Za-z_]\w*)+", re.ASCII)
 _NODE: Final = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 
@@ -52,6 +55,8 @@ def write(domain: int, session: str, entity: Entity) -> str:
         ]
         if entity.stands_in:
             parts.append(_STANDS_IN)
+        if entity.refuses:
+            parts.append(_REFUSES)
     return "/".join(parts)
 
 
@@ -66,9 +71,9 @@ def read(token: str) -> Entity:
     if prefix != _PREFIX:
         raise ValueError(f"{token[:100]!r} is not a token")
     entity = Entity(
-        kind=Kind(kind),
-        node_id=int(_must_match(_COUNTER, node_id)),
-        entity_id=int(_must_match(_COUNTER, entity_id)),
+        kind=Kind(_must_match(_KIND, kind)),
+        node_id=_number_of(node_id),
+        entity_id=_number_of(entity_id),
         enclave=_must_match(_PATH, _demangled(enclave)),
         namespace=_must_match(_PATH, _demangled(namespace)),
         node=_must_match(_NODE, node),
@@ -87,6 +92,7 @@ def read(token: str) -> Entity:
         type_hash=hash_of(type_hash),
         qos=qos_text.read(profile),
         stands_in=_STANDS_IN in parts[_ENDPOINT_PARTS:],
+        refuses=_REFUSES in parts[_ENDPOINT_PARTS:],
     )
 
 
@@ -96,10 +102,22 @@ def session_of(token: str) -> str:
     return parts[2] if len(parts) == 4 else ""
 
 
+def session_id(text: str) -> str:
+    """The text, if it may be the id of a session; raises ValueError."""
+    return _must_match(_SESSION, text)
+
+
 def gid_of(token: str) -> bytes:
     """The gid of the entity with this token: 16 bytes, the low half of a hash before the high one."""
     number = xxhash.xxh3_128_intdigest(token.encode())
     return number.to_bytes(16, "little")
+
+
+def _number_of(text: str) -> int:
+    """An id as a number: rmw_zenoh counts, but reads any text, and dora-rs writes the name of the node."""
+    if _must_match(_ID, text).isdecimal():
+        return int(text)
+    return xxhash.xxh3_64_intdigest(text.encode())
 
 
 def _mangled(name: str) -> str:

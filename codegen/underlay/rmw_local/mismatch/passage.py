@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
-    from rmw_local.origin import Origin
+    from rmw_local.mismatch.origin import Origin
+    from rmw_local.service import ServiceEndpoint
 
 
 class Marking:
@@ -51,3 +52,21 @@ class Downgrading:
         data = self._origin.downgraded(letter[0], self._kind, self._node)
         if data is not None:
             self.end.accept((data, *letter[1:]))
+
+
+class Converting:
+    """Stands for a client or a server of another version in another process, which `mine` adapts."""
+
+    __slots__ = ("_mine", "_outgoing", "end", "incoming")
+    is_remote = True
+
+    def __init__(self, end: Any, incoming: Origin, outgoing: Origin, mine: ServiceEndpoint) -> None:
+        """`incoming` marks what comes from the end; `outgoing` converts what goes there."""
+        self.end = end
+        self.incoming = incoming
+        self._outgoing = outgoing
+        self._mine = mine
+
+    def downgraded(self, data: bytes) -> bytes | None:
+        """A request or a response as the end reads it; None if that fails, which is said once."""
+        return self._outgoing.downgraded(data, self._mine.sends, self._mine.node)

@@ -18,14 +18,10 @@ if TYPE_CHECKING:
 
     from ifgen_runtime.mismatch.sides import Definition
 
-    from rmw_local.encounter import Encounter, Party
+    from rmw_local.mismatch.encounter import Encounter, Party
 
 _ACTION = "/_action/"
 _SHOWN = len("RIHS01_") + 16
-_BETWEEN_PROCESSES = (
-    "\nBetween processes only equal definitions meet, so nothing is exchanged.",
-    "\nBetween processes only equal definitions meet, unless the subscription adapts.",
-)
 _SUFFIXES = ("SendGoal", "GetResult", "FeedbackMessage")  # of the names of parts
 _PARTS = ("SendGoalService", "GetResultService", "FeedbackMessage")
 
@@ -61,11 +57,27 @@ def _tell(mismatch: Mismatch, encounter: Encounter) -> None:
     else:
         text = explanation(mismatch)
         lacks_adapter = encounter.wanted == "adapt" != encounter.policy
-        if lacks_adapter and not (encounter.crosses_processes and mismatch.mine.role != "subscription"):
+        if lacks_adapter and not (encounter.crosses_processes and _cannot_adapt(mismatch)):
             text += _missing(mismatch, text)
         if encounter.crosses_processes and not encounter.adapts:
-            text += _BETWEEN_PROCESSES[mismatch.mine.role == "publisher"]
+            text += _between_processes(mismatch, encounter)
     report.say(node, text, is_warning=mismatch.policy != "adapt")
+
+
+def _between_processes(mismatch: Mismatch, encounter: Encounter) -> str:
+    """The consequence for two processes, where mine does not adapt."""
+    theirs = mismatch.theirs.role.removeprefix("service ")  # subscription, client or server
+    can_adapt = mismatch.mine.role != "subscription" and mismatch.kind != "action"
+    if isinstance(encounter.theirs, ServiceEndpoint) and encounter.theirs.refuses:
+        return f"\n{mismatch.theirs.node} refuses other definitions, so nothing is exchanged."
+    if can_adapt and (mismatch.kind == "topic" or encounter.wanted != "refuse"):
+        return f"\nBetween processes only equal definitions meet, unless the {theirs} adapts."
+    return "\nBetween processes only equal definitions meet, so nothing is exchanged."
+
+
+def _cannot_adapt(mismatch: Mismatch) -> bool:
+    """Whether mine could not use an adapter between processes."""
+    return mismatch.kind == "action" or mismatch.mine.role == "publisher"
 
 
 def _missing(mismatch: Mismatch, said: str) -> str:

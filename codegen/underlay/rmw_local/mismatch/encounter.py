@@ -8,8 +8,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 from rmw_local.message import Elsewhere
-from rmw_local.origin import Origin
-from rmw_local.passage import Downgrading, Marking
+from rmw_local.mismatch.origin import Origin
+from rmw_local.mismatch.passage import Converting, Downgrading, Marking
 
 if TYPE_CHECKING:
     from ifgen_runtime.adapters import Adapter
@@ -29,8 +29,8 @@ class Encounter(NamedTuple):
     """A pair of endpoints. `mine` is the one whose node's policy was applied: on a topic, the reader.
 
     `wanted` is that policy, and `policy` what came of it: a node that has no adapter refuses. Endpoints in
-    two processes refuse each other, because the type hash is part of what a message is addressed to. Only a
-    subscription that adapts also takes what is addressed to the other hash.
+    two processes refuse each other, because the type hash is part of what a message is addressed to. Only
+    who adapts also takes what is addressed to the other hash, or sends to it. There `mine` is the one here.
     """
 
     mine: Party
@@ -38,6 +38,7 @@ class Encounter(NamedTuple):
     wanted: str
     policy: str
     origin: Origin | None = None  # of messages, where they flow nevertheless
+    converting: Converting | None = None  # what stands for theirs, if mine adapts a service across processes
 
     @property
     def crosses_processes(self) -> bool:
@@ -81,7 +82,7 @@ def meet_on_service(client: ServiceClient, server: ServiceServer) -> tuple[Encou
     Whoever refuses decides. Else whoever adapts does, the server first.
     """
     if client.is_remote or server.is_remote:
-        return _across_processes(server, client), None
+        return _meet_across_processes(client, server)
     sides: list[tuple[ServiceEndpoint, ServiceEndpoint]] = [(server, client), (client, server)]
     for mine, theirs in sides:
         if _policy(mine, theirs) == _REFUSE:
@@ -107,6 +108,30 @@ def _across_processes(one: Party, other: Party) -> Encounter:
     return Encounter(mine, theirs, _policy(mine, theirs), _REFUSE)
 
 
+def _meet_across_processes(client: ServiceClient, server: ServiceServer) -> tuple[Encounter, Ends | None]:
+    mine, theirs = (server, client) if client.is_remote else (client, server)
+    if theirs.refuses:
+        return Encounter(mine, theirs, _REFUSE, _REFUSE), None
+    wanted = _policy(mine, theirs)
+    converting = _converting(mine, theirs) if wanted == _ADAPT else None
+    if converting is None:
+        return Encounter(mine, theirs, wanted, _REFUSE), None
+    ends = (converting, server) if theirs is client else (client, converting)
+    return Encounter(mine, theirs, _ADAPT, _ADAPT, converting=converting), ends
+
+
+def _converting(mine: ServiceEndpoint, theirs: ServiceEndpoint) -> Converting | None:
+    """Return what stands for theirs, which is in another process, if mine adapts; None without adapters."""
+    from ifgen_runtime.adapters import adapter_for  # late: only nodes that adapt need it
+
+    # Only the hash of the whole service is known, not those of its parts.
+    incoming = adapter_for(theirs.kind.type_hash, mine.takes.cls)
+    outgoing = adapter_for(theirs.kind.type_hash, mine.sends.cls)
+    if incoming is None or outgoing is None or outgoing.downgrade is None:
+        return None
+    return Converting(theirs, _origin(theirs, incoming), _origin(theirs, outgoing), mine)
+
+
 def _adapted(mine: ServiceEndpoint, theirs: ServiceEndpoint) -> Ends | None:
     """Return mine and theirs, or their stand-ins, if mine adapts; None if an adapter is missing.
 
@@ -128,11 +153,13 @@ def _adapted(mine: ServiceEndpoint, theirs: ServiceEndpoint) -> Ends | None:
 
 
 def _adapter(theirs: MessageType, mine: MessageType) -> Adapter | None:
-    from ifgen_runtime.mismatch import conversion  # late: only nodes that adapt need it
+    # Late, both: only nodes that adapt need them.
+    from ifgen_runtime.adapters import adapter_for
+    from ifgen_runtime.mismatch.conversion import adapter_between
 
     if theirs.cls is Elsewhere:  # so no adapter can follow from those of its fields
-        return conversion.adapter_for(theirs.type_hash, mine.cls)
-    return conversion.adapter_between(theirs.cls, mine.cls)
+        return adapter_for(theirs.type_hash, mine.cls)
+    return adapter_between(theirs.cls, mine.cls)
 
 
 def _origin(peer: ServiceEndpoint, adapter: Adapter | None = None) -> Origin:

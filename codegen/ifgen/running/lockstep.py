@@ -1,0 +1,37 @@
+"""Runs each of several programs in a process, with a virtual time that they share: `ifgen run --lockstep`."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from functools import partial
+from importlib import import_module
+from typing import Any
+
+from ifgen.running.ending import INTERRUPTED, is_interruption, tell
+from ifgen.running.program import Program
+
+
+def run(programs: Sequence[Program]) -> int:
+    """Run programs on the local transport until the last one ends; returns the exit code of what fails."""
+    lockstep: Any = import_module("rmw_local.lockstep")  # by name: the toolkit does not depend on an rclpy
+    calls = [partial(_execute, program) for program in programs]
+    try:
+        lockstep.run(*calls, names=[program.name for program in programs])
+    except lockstep.LockstepError as error:
+        print(f"ifgen: {error}", file=sys.stderr)
+        return int(error.exit_code)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return 0
+
+
+def _execute(program: Program) -> None:
+    """Run a program in the process that is there for it."""
+    try:
+        program.execute()
+    except Exception as error:
+        if is_interruption(error):
+            raise
+        tell(error)
+        raise SystemExit(1) from error
