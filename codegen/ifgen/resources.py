@@ -62,6 +62,11 @@ def examples() -> Path:
     return _beside_or("examples", PACKAGE.parent.parent / "examples")
 
 
+def humanoid() -> Path:
+    """The library of our humanoid's nodes, and what brings them up."""
+    return (examples() / "humanoid").resolve()
+
+
 def rules_page() -> Path:
     """The page with every rule that a diagnostic may name."""
     beside = PACKAGE / "rules.md"

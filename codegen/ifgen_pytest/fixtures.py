@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
@@ -65,6 +65,16 @@ def ros_node(ros_executor: SingleThreadedExecutor) -> Iterator[NodeFactory]:
 def ros_collect(ros_executor: SingleThreadedExecutor, ros_node: NodeFactory) -> CollectorFactory:
     """Makes collectors of messages: `ros_collect(String, "chatter").wait(3)`."""
     return CollectorFactory(ros_executor, ros_node)
+
+
+@pytest.fixture
+def ros_lockstep() -> Callable[..., Any]:
+    """`rmw_local.lockstep.run`: calls functions, each in a process, in one virtual time (local only)."""
+    try:
+        from rmw_local.lockstep import run
+    except ImportError:
+        pytest.skip("lockstep needs the local transport: run pytest with --transport local")
+    return run
 
 
 @pytest.fixture

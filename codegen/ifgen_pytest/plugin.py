@@ -9,13 +9,31 @@ from typing import Any
 import pytest
 
 from ifgen_pytest import transport
+from ifgen_pytest.bags import FOLDER, RECORDING, bag, record, replay
 from ifgen_pytest.comparison import explain
 from ifgen_pytest.domains import RANGE
-from ifgen_pytest.fixtures import ros_collect, ros_context, ros_executor, ros_node, ros_virtual_clock
+from ifgen_pytest.fixtures import (
+    ros_collect,
+    ros_context,
+    ros_executor,
+    ros_lockstep,
+    ros_node,
+    ros_virtual_clock,
+)
 from ifgen_pytest.hints import hint
 from ifgen_pytest.strict import StrictCheck
 
-__all__ = ["ros_collect", "ros_context", "ros_executor", "ros_node", "ros_virtual_clock"]
+__all__ = [
+    "bag",
+    "record",
+    "replay",
+    "ros_collect",
+    "ros_context",
+    "ros_executor",
+    "ros_lockstep",
+    "ros_node",
+    "ros_virtual_clock",
+]
 
 _TRANSPORT = pytest.StashKey[str]()
 _CHECK = pytest.StashKey[StrictCheck]()
@@ -25,8 +43,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Declare the settings; `--transport` follows once all conftests had their say."""
     parser.addini("transport", "where rclpy comes from: local, rclpy, auto or both", default="")
     parser.addini("ros_strict", "apply the marker ros_strict to every test", "bool", default=False)
-    parser.getgroup("ifgen").addoption(
-        "--ros-strict", action="store_true", help="apply the marker ros_strict to every test"
+    parser.addini(FOLDER, "the folder for the bags of tests that fail", default="")
+    group = parser.getgroup("ifgen")
+    group.addoption("--ros-strict", action="store_true", help="apply the marker ros_strict to every test")
+    group.addoption(
+        "--ros-bags",
+        metavar="FOLDER",
+        help="keep the bags of tests that fail here, not in a temporary folder",
     )
 
 
@@ -77,7 +100,7 @@ def pytest_report_header(config: pytest.Config) -> list[str]:
 
 
 def pytest_assertrepr_compare(op: str, left: object, right: object) -> list[str] | None:
-    """Name the fields in which messages differ."""
+    """Name the fields in which messages or replays differ."""
     return explain(left, right) if op == "==" else None
 
 
@@ -86,6 +109,17 @@ def pytest_exception_interact(node: pytest.Item | pytest.Collector, call: Any, r
     asked = node.config.stash.get(_TRANSPORT, None) is not None
     if not asked and call.excinfo is not None and (advice := hint(call.excinfo.value)):
         report.sections.append(("ifgen", advice))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: Any
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Keep the bag of a test that fails, and say where it is."""
+    report = yield
+    if (recording := item.stash.get(RECORDING, None)) is not None:
+        recording.note(report)
+    return report
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from ifgen_runtime.errors import ConversionError as ConversionError
     from ifgen_runtime.errors import DeserializationError as DeserializationError
     from ifgen_runtime.errors import SerializationError as SerializationError
+    from ifgen_runtime.errors import ServerGoneError as ServerGoneError
     from ifgen_runtime.interface import Action as Action
     from ifgen_runtime.interface import Service as Service
     from ifgen_runtime.message import Message as Message
@@ -34,6 +35,7 @@ __all__ = [
     "InvalidArgumentsError",
     "Message",
     "SerializationError",
+    "ServerGoneError",
     "Service",
     "deserialize",
     "from_dict",
@@ -55,6 +57,7 @@ __getattr__, __dir__ = lazy_exports(
         "InvalidArgumentsError": "checks",
         "Message": "message",
         "SerializationError": "errors",
+        "ServerGoneError": "errors",
         "Service": "interface",
         "deserialize": "codec",
         "from_dict": "convert",

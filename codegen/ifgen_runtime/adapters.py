@@ -156,6 +156,11 @@ def unchanged(message: MessageT) -> MessageT:
     return message
 
 
+def in_class(cls: type[MessageT], message: Any) -> MessageT:
+    """A message of another class of the same version as one of `cls`, by way of its bytes."""
+    return message if isinstance(message, cls) else deserialize(serialize(message), cls)
+
+
 def _hash_of(cls: type[Any]) -> str:
     found: str | None = getattr(cls, "__type_hash__", None)
     return _hash_of_compiled(cls) if found is None else found
@@ -203,19 +208,14 @@ def _joined(steps: tuple[Adapter, ...], cls: type[Any]) -> Adapter:
 
     def upgrade(message: Any) -> Any:
         for step in steps:
-            message = step.upgrade(_as(step.old, message))
-        return _as(cls, message)
+            message = step.upgrade(in_class(step.old, message))
+        return in_class(cls, message)
 
     def downgrade(message: Any) -> Any:
         for step in reversed(steps):
             assert step.downgrade is not None
-            message = step.downgrade(_as(step.new, message))
-        return _as(old, message)
+            message = step.downgrade(in_class(step.new, message))
+        return in_class(old, message)
 
     is_complete = all(step.downgrade is not None for step in steps)
     return Adapter(old, cls, upgrade, downgrade if is_complete else None, last.new_hash, steps[0].within)
-
-
-def _as(cls: type[MessageT], message: Any) -> MessageT:
-    """A message of another class of the same version, by its bytes."""
-    return message if isinstance(message, cls) else deserialize(serialize(message), cls)

@@ -1,4 +1,4 @@
-"""The exceptions of the codec and of the conversions: one base, one for each direction."""
+"""The exceptions for users: those of the codec and of the conversions, and a server that is gone."""
 
 from __future__ import annotations
 
@@ -43,6 +43,13 @@ class DeserializationError(CodecError):
 
 class ConversionError(CodecError):
     """A mapping, its JSON or YAML text, or an array holds what a message of this type cannot hold."""
+
+
+class ServerGoneError(ConnectionError):
+    """No response will come to a request: the servers that it was sent to are gone.
+
+    On the local transport, the future of the request holds it. Real rclpy leaves the future pending.
+    """
 
 
 class Problem(Exception):

@@ -289,6 +289,12 @@ class Message(metaclass=MessageMeta):
 
         return attached(generated_class(cls))[1](data)
 
+    def _repr_html_(self) -> str:
+        """The message as notebooks show it: a table of its fields."""
+        from ifgen_runtime.notebook import html_of  # only notebooks ask
+
+        return html_of(self)
+
     @property
     def _check_fields(self) -> bool:
         """Whether values are checked when they are assigned; can be changed."""

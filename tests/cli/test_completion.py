@@ -39,6 +39,19 @@ def test_commands_options_and_files(complete: Run) -> None:
     assert complete("run", "server.py", ":", "cli") == ["file,cli"]
 
 
+def test_packages_and_their_programs(complete: Run) -> None:
+    write(Path("src/my_pkg/package.xml"), "<package format='3'><name>my_pkg</name></package>")
+    setup = (
+        "setup(entry_points={'console_scripts': ['talker = my_pkg.talker:main', 'other=my_pkg.other:run']})"
+    )
+    write(Path("src/my_pkg/setup.py"), setup)
+    assert complete("run", "my_") == ["file,my_", "plain,my_pkg"]
+    assert complete("run", "my_pkg", "") == ["plain,other", "plain,talker"]
+    assert complete("run", "a.py", ":", "my_pkg", "ta") == ["plain,talker"]
+    assert complete("run", "my_pkg", "talker", "x") == ["file,x"]
+    assert complete("test", "my_") == ["plain,my_pkg"]
+
+
 def test_names_of_types(complete: Run, demo_msgs: Path) -> None:
     assert complete("show", "demo") == []
     write(Path("pyproject.toml"), '[tool.ifgen]\npaths = ["demo_msgs"]\n')
@@ -92,6 +105,9 @@ def test_options_that_there_are_not(ifgen: Run) -> None:
 
     assert said("generate", "--outpt", "x") == (
         "error: no such option '--outpt'\n  = help: did you mean '--output'? see `ifgen generate --help`\n"
+    )
+    assert "--paramtype'\n  = help: did you mean '--param-type' or '--param-prefixes'?" in said(
+        "param", "list", "--paramtype"
     )
     assert "did you mean '--check'?" in said("generate", "--dry-run")
     assert "did you mean 'generate'?" in said("generat")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from ifgen_pytest.comparison import explain
 
 from .support import needs_rclpy
 
@@ -59,3 +60,22 @@ def test_fields_that_differ(pytester: pytest.Pytester, transport: str) -> None:
     result = pytester.runpytest_subprocess("--transport", transport, "-p", "no:randomly")
     result.assert_outcomes(passed=1, failed=6)
     result.stdout.fnmatch_lines(TOLD.splitlines())
+
+
+def test_two_classes_of_one_type() -> None:
+    def point(type_hash: str) -> object:
+        body = {
+            "__module__": "geometry_msgs.msg._point",
+            "__type_hash__": type_hash,
+            "get_fields_and_field_types": classmethod(lambda cls: {}),
+        }
+        return type("Point", (), body)()
+
+    assert explain(point("RIHS01_a"), point("RIHS01_b")) == [
+        "Point == Point",
+        "these are two classes of geometry_msgs/Point, of the definitions RIHS01_a and RIHS01_b",
+    ]
+    assert explain(point("RIHS01_a"), point("RIHS01_a")) == [
+        "Point == Point",
+        "these are two classes of geometry_msgs/Point, of one definition",
+    ]

@@ -23,3 +23,10 @@ def test_a_domain_is_passed_over_where_a_killed_process_left_an_empty_port(
     (tmp_path / "fastrtps_port17911").write_bytes(b"a port that is in use")
     with domains.own_domain() as domain:
         assert 41 < domain <= 60  # the next that no other test has
+
+
+def test_there_are_no_more_domains(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(domains, "_hangs", lambda _: True)
+    says = "all 101 ROS domains are in use by other tests on this machine"
+    with pytest.raises(RuntimeError, match=says), domains.own_domain():
+        pytest.fail("there is none")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from .support import needs_rclpy
@@ -131,3 +133,10 @@ def test_virtual_clock_is_local(pytester: pytest.Pytester) -> None:
     result.stdout.fnmatch_lines(
         ["*virtual time needs the local transport: run pytest with --transport local*"]
     )
+
+
+def test_lockstep(pytester: pytest.Pytester) -> None:
+    page = (Path(__file__).parents[2] / "docs/testing.md").read_text()
+    example = page.partition("## Lockstep")[2].partition("```python\n")[2].partition("```")[0]
+    pytester.makepyfile(example)
+    pytester.runpytest_subprocess("--transport=local").assert_outcomes(passed=1)

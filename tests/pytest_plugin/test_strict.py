@@ -106,7 +106,7 @@ def test_ends_with_the_context(ros_node, ros_executor):
 """
 
 
-@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_rclpy)])
+@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=(needs_rclpy, pytest.mark.slow))])
 def test_exceptions_fail_the_test(pytester: pytest.Pytester, transport: str) -> None:
     pytester.makepyfile(test_raising=RAISING, test_expected=EXPECTED)
     result = pytester.runpytest_subprocess("--transport", transport, "--ros-strict", "-p", "no:cacheprovider")

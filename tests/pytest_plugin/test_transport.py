@@ -110,6 +110,7 @@ def test_what_the_project_brings_wins_over_our_examples(pytester: pytest.Pyteste
     pytester.runpytest_subprocess().assert_outcomes(passed=1)
 
 
+@pytest.mark.slow
 def test_hint_where_a_transport_is_missing(pytester: pytest.Pytester) -> None:
     """The hint appears wherever a test imports a package that is not on the path."""
     (pytester.mkdir("ws") / "mine_msgs/msg").mkdir(parents=True)

@@ -39,6 +39,15 @@ def format_(command: Callable[..., Any]) -> Callable[..., Any]:
     return click.option("--format", "format_", type=choice, default="text", help=help)(command)
 
 
+def transport(command: Callable[..., Any]) -> Callable[..., Any]:
+    """`--transport local|rclpy|auto`; the variable IFGEN_TRANSPORT, where it is set, is the default."""
+    help = "Our rclpy (local), the real one (rclpy), or the real one if it is installed (auto, the default)."
+    choice = click.Choice(["local", "rclpy", "auto"])
+    return click.option("--transport", type=choice, default="auto", envvar="IFGEN_TRANSPORT", help=help)(
+        command
+    )
+
+
 class WithDepsCommand(click.Command):
     """A command with `--with-deps`, whose value is written with a `=` or left out: what follows is a PATH."""
 

@@ -28,13 +28,14 @@ VARIABLE = "_IFGEN_COMPLETE"
 """Set by the scripts when they ask for completions; `bash_source` and the like, for a script itself."""
 
 
-@click.command()
+@click.command(epilog="Example: ifgen completion bash > ifgen.bash")
 @click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
 @click.pass_context
 def completion(context: click.Context, shell: str) -> int:
     """Print a script for completion in a shell.
 
-    It completes commands, options, files, and names of types, rules and templates.
+    It completes commands, options, files, and names: of types, packages, rules and templates, and of the
+    nodes, topics, services, actions and parameters that run.
 
     \b
     bash: into ~/.local/share/bash-completion/completions/ifgen
@@ -150,3 +151,41 @@ def files(_: click.Context, __: click.Parameter, typed: str) -> _Items:
     from click.shell_completion import CompletionItem
 
     return [CompletionItem(typed, type="file")]
+
+
+def programs(context: click.Context, parameter: click.Parameter, typed: str) -> _Items:
+    """Files and packages, or the nodes of a package that is the word before, for `ifgen run`."""
+    names = _programs(context, parameter, typed)
+    if names and _present(context):
+        return names
+    return [*files(context, parameter, typed), *names]
+
+
+def _present(context: click.Context) -> list[str]:
+    """The words of the program that is being typed."""
+    words: list[str] = list(context.params.get("program") or ())
+    while ":" in words:
+        words = words[words.index(":") + 1 :]
+    return words
+
+
+@_completing
+def _programs(context: click.Context, typed: str) -> Iterable[str]:
+    from ifgen.config.settings import settle
+    from ifgen.running.finding import packages as finding
+
+    output, words = settle().output, _present(context)
+    if not words:
+        begun = [name for name in finding.names(output) if name.startswith(typed)]
+        return [name for name in begun if (found := finding.find(name, output)) and found.executables]
+    package = finding.find(words[0], output) if len(words) == 1 and not Path(words[0]).exists() else None
+    return sorted(package.executables) if package else ()
+
+
+@_completing
+def packages(_: click.Context, __: str) -> Iterable[str]:
+    """Names of packages that are generated, sources here, or installed."""
+    from ifgen.config.settings import settle
+    from ifgen.running.finding import packages as finding
+
+    return finding.names(settle().output)

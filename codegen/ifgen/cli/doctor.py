@@ -21,6 +21,7 @@ from ifgen import resources
 from ifgen.cli import terminal
 from ifgen.cli.arguments import format_ as format_option
 from ifgen.cli.arguments import include as include_option
+from ifgen.cli.running import other_processes
 from ifgen.config import installing
 
 # Late imports: only `--graph` needs these.
@@ -53,7 +54,9 @@ _WITH_WHEELS = ("jazzy", "kilted")
 _TESTED = _WITH_WHEELS  # the native tests run on the wheels
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"]}, epilog="Example: ifgen doctor --graph"
+)
 @click.option("--graph", is_flag=True, help="Look at running nodes instead: whose definitions differ?")
 @click.option(
     "--run",
@@ -138,7 +141,8 @@ def _other_processes() -> Finding:
     number = _version("eclipse-zenoh")
     if number is None:
         return Finding("other processes", "not reached: Zenoh is missing", installing.add_extra("net"))
-    return Finding("other processes", f"reached over Zenoh {number}")
+    found, advice = other_processes.look()
+    return Finding("other processes", f"{found} (Zenoh {number})", advice)
 
 
 def _runtime() -> Finding:

@@ -24,7 +24,7 @@ TYPINGS: Final = Path("typings")
 """Where Pyright and Pylance look for stubs unless told otherwise."""
 
 
-@click.command()
+@click.command(epilog="Example: ifgen paths --format vscode")
 @click.option(
     "--format",
     "format_",
@@ -55,7 +55,7 @@ def paths(format_: str, typings: Path | None, as_json: bool) -> int:
     return 0
 
 
-@click.command()
+@click.command(epilog="Example: ifgen typings")
 @click.argument("directory", metavar="[DIR]", type=OUTPUT_FOLDER, default=TYPINGS)
 @click.option("--check", is_flag=True, help="Write nothing; show a diff and exit with 1 on drift.")
 @quiet_option

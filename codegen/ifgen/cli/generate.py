@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 # Late imports: the stages take longest to load, and a mistake in an option is told without them.
 
 
-@click.command(cls=WithDepsCommand)
+@click.command(cls=WithDepsCommand, epilog="Example: ifgen generate interfaces -o src")
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @click.option(
     "-o",

@@ -30,7 +30,10 @@ _SUFFIXES: dict[str, Format] = {
 }
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Example: ifgen graph --run talker.py -o graph.svg",
+)
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @click.option(
     "--format",

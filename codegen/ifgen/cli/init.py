@@ -33,7 +33,7 @@ class _Change:
     after: str
 
 
-@click.command()
+@click.command(epilog="Example: ifgen init interfaces -o src")
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @click.option(
     "-o",

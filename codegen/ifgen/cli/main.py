@@ -17,12 +17,13 @@ from typing import TYPE_CHECKING, Final, Literal
 import click
 
 from ifgen import resources
-from ifgen.cli import completion, terminal
+from ifgen.cli import completion, further, terminal
 from ifgen.cli.arguments import EXISTING
 from ifgen.cli.arguments import format_ as format_option
 from ifgen.cli.arguments import include as include_option
 from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.arguments import strict as strict_option
+from ifgen.cli.arguments import transport as transport_option
 from ifgen.config.settings import settle
 from ifgen.writing.interruption import terminable
 
@@ -49,8 +50,8 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
         words = list(sys.argv[1:] if arguments is None else arguments)
         # Not `commands.main`, which has its own way with Ctrl-C.
         with commands.make_context("ifgen", words) as context:
-            code: int = commands.invoke(context)
-            return code
+            code: int | None = commands.invoke(context)
+            return code or 0
     except click.exceptions.Exit as ending:  # --help and --version
         return ending.exit_code
     except click.exceptions.NoArgsIsHelpError as error:
@@ -64,11 +65,13 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
 def _told(error: click.ClickException) -> Iterator[str]:
     """An error of click in the form of our own errors."""
     message, _, meant = error.format_message().partition(" Did you mean ")
+    if near := getattr(error, "possibilities", None):
+        message, meant = error.message, " or ".join(map(repr, near))
     message = " ".join(message.split()).rstrip(".")  # lists of choices have a line for each
     yield f"error: {message[:1].lower()}{message[1:]}"
     if isinstance(error, click.NoSuchOption):
         meant = meant or _CALLED_OTHERWISE.get(error.option_name, "")
-    help = f"did you mean {meant.rstrip('?')}? " if meant else ""
+    help = f"did you mean {meant.rstrip('?')}? " if meant else getattr(error, "help", "")
     if isinstance(error, click.UsageError) and error.ctx is not None:
         help += f"see `{error.ctx.command_path} --help`"
     if help:
@@ -80,7 +83,10 @@ _CALLED_OTHERWISE: Final = {"--dry-run": "'--check'"}
 
 
 class _Commands(click.Group):
-    """The commands of this module, and those with a module of their own, imported when it is their turn."""
+    """The commands of this module, those with a module of their own, and those of entry points.
+
+    Each is imported when it is its turn.
+    """
 
     elsewhere: Final = (
         *(
@@ -93,31 +99,34 @@ class _Commands(click.Group):
             "generate",
             "graph",
             "init",
+            "interop",
             "lock",
             "new",
             "nodl",
             "paths",
         ),
-        *("router", "rules", "templates", "typings"),
+        *("router", "rules", "templates", "test", "typings"),
     )
     module_of: Final = {
         "adapt": "evolution.adapt",
         "breaking": "evolution.breaking",
         "demo": "running.demo",
         "diff": "evolution.diff",
+        "interop": "running.interop",
         "lock": "evolution.lock",
         "paths": "editors",
         "router": "running.router",
+        "test": "running.test",
         "typings": "editors",
     }
     """The modules that are not called as their command."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return sorted((*super().list_commands(ctx), *self.elsewhere))
+        return sorted({*super().list_commands(ctx), *self.elsewhere, *further.names()})
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.elsewhere:
-            return super().get_command(ctx, cmd_name)
+            return super().get_command(ctx, cmd_name) or further.command(cmd_name)
         module = import_module(f"ifgen.cli.{self.module_of.get(cmd_name, cmd_name)}")
         command: click.Command = getattr(module, cmd_name)
         return command
@@ -142,7 +151,7 @@ def commands() -> None:
     """ROS 2 interfaces as typed Python packages, with nothing to compile."""
 
 
-@commands.command()
+@commands.command(epilog="Example: ifgen check interfaces --strict")
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @include_option
 @format_option
@@ -171,7 +180,7 @@ def check(
     return terminal.print_findings(told, format_, "" if quiet else f"{_looked_at(findings)}: no mistakes")
 
 
-@commands.command()
+@commands.command(epilog="Example: ifgen show geometry_msgs/msg/Pose")
 @click.argument("type_", metavar="TYPE|PACKAGE", shell_complete=completion.types_and_packages)
 @include_option
 @click.option("--json", "as_json", is_flag=True, help="Print the ROS type description instead.")
@@ -204,7 +213,7 @@ def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
     return 0
 
 
-@commands.command("hash")
+@commands.command("hash", epilog="Example: ifgen hash std_srvs/srv/Trigger")
 @click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1, shell_complete=completion.types_and_packages)
 @include_option
 def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
@@ -229,32 +238,44 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
         "ignore_unknown_options": True,
         "allow_interspersed_args": False,
         "help_option_names": ["-h", "--help"],
-    }
+    },
+    epilog="Example: ifgen run --transport local talker.py : listener.py",
 )
+@transport_option
 @click.option(
-    "--transport",
-    type=click.Choice(["local", "rclpy", "auto"]),
-    default="auto",
-    help="Our rclpy (local), the real one (rclpy), or the real one if it is installed (auto, the default).",
+    "--lockstep",
+    "in_lockstep",
+    is_flag=True,
+    help="Each program in a process, with one virtual time: the same run every time (local transport).",
 )
 @click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
+@click.option("--until-all-end", is_flag=True, hidden=True)  # `ifgen launch --one-process`
 @click.argument(
     "program",
-    metavar="FILE|-m MODULE [ARGS]...",
+    metavar="FILE|-m MODULE|PACKAGE NODE [ARGS]...",
     nargs=-1,
     type=click.UNPROCESSED,
-    shell_complete=completion.files,
+    shell_complete=completion.programs,
 )
-def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, program: tuple[str, ...]) -> int:
+def run(
+    transport: Literal["local", "rclpy", "auto"],
+    in_lockstep: bool,
+    generate_first: bool,
+    until_all_end: bool,
+    program: tuple[str, ...],
+) -> int:
     """Run programs written for rclpy, with `:` between them.
 
     Each behaves as if it ran alone. When the last one ends, the others are interrupted as by Ctrl-C. For
     example: `ifgen run server.py : client.py 41 1`. All arguments after FILE or MODULE belong to the program,
     including --ros-args.
+
+    PACKAGE is a generated one, sources in this folder or in src, or one that is installed. A FILE of that
+    name comes first.
     """
     from ifgen.running import run as running
 
-    programs, settings = running.split(program), settle()
+    settings = settle()
     if generate_first:
         from ifgen.cli import generate
 
@@ -262,7 +283,10 @@ def run(transport: Literal["local", "rclpy", "auto"], generate_first: bool, prog
             # stdout is the programs'
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
-    return running.run(programs, transport, settings.output)
+    programs = running.split(program, settings.output)
+    return running.run(
+        programs, transport, settings.output, in_lockstep=in_lockstep, until_all_end=until_all_end
+    )
 
 
 def _looked_at(findings: Findings) -> str:

@@ -34,7 +34,7 @@ def new() -> None:
     """
 
 
-@new.command()
+@new.command(epilog="Example: ifgen new package lab_msgs")
 @click.argument("name")
 @_in
 def package(name: str, folder: Path | None) -> int:
@@ -49,7 +49,7 @@ def package(name: str, folder: Path | None) -> int:
     return 0
 
 
-@new.command()
+@new.command(epilog="Example: ifgen new interface demo_msgs/msg/Goal")
 @click.argument("name", metavar="PACKAGE/FOLDER/NAME")
 @_in
 def interface(name: str, folder: Path | None) -> int:
@@ -79,7 +79,7 @@ def interface(name: str, folder: Path | None) -> int:
     return 0
 
 
-@new.command()
+@new.command(epilog="Example: ifgen new node gait_planner")
 @click.argument("name", metavar="[PACKAGE/]NAME")
 @_in
 def node(name: str, folder: Path | None) -> int:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from ifgen.cli.arguments import OUTPUT_FILE
+from ifgen.cli.arguments import transport as transport_option
 from ifgen.diagnostics import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -36,18 +37,17 @@ def nodl() -> None:
     """
 
 
-@nodl.command(cls=_WithPrograms, options_metavar="[OPTIONS]")
+@nodl.command(
+    cls=_WithPrograms,
+    options_metavar="[OPTIONS]",
+    epilog="Example: ifgen nodl describe /talker -o talker.nodl.yaml -- talker.py",
+)
 @click.argument("node", metavar="[NODE] [-- PROGRAM [ARGS]...]", required=False)
 @click.option(
     "-o", "--output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file, .yaml or .json."
 )
 @click.option("--force", is_flag=True, help="Replace FILE if it exists.")
-@click.option(
-    "--transport",
-    type=click.Choice(["local", "rclpy", "auto"]),
-    default="auto",
-    help="Our rclpy (local), the real one (rclpy), or the real one if it is installed (auto, the default).",
-)
+@transport_option
 @click.pass_context
 def describe(
     context: click.Context,
@@ -84,7 +84,7 @@ def describe(
     return 0
 
 
-@nodl.command()
+@nodl.command(epilog="Example: ifgen nodl schema > nodl.schema.json")
 def schema() -> int:
     """Print the JSON schema of NoDL, for editors.
 

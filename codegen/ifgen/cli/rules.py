@@ -13,7 +13,7 @@ from ifgen.config import rulebook
 from ifgen.diagnostics import Diagnostic, UsageError
 
 
-@click.command()
+@click.command(epilog="Example: ifgen rules keyword-name")
 @click.argument("names", metavar="[RULE]...", nargs=-1, shell_complete=completion.rules)
 def rules(names: tuple[str, ...]) -> int:
     """Explain the rules that errors and warnings name.

@@ -35,7 +35,7 @@ def templates() -> None:
     """
 
 
-@templates.command("list")
+@templates.command("list", epilog="Example: ifgen templates list message_package")
 @click.argument("names", metavar="[NAME]...", nargs=-1, shell_complete=completion.templates)
 def print_list(names: tuple[str, ...]) -> int:
     """List the templates: what each makes, its variables and its parts.
@@ -52,7 +52,7 @@ def print_list(names: tuple[str, ...]) -> int:
     return 0
 
 
-@templates.command()
+@templates.command(epilog="Example: ifgen templates export message_package templates")
 @click.argument("name", shell_complete=completion.templates)
 @click.argument("folder", metavar="[DIR]", required=False, type=OUTPUT_FOLDER)
 @click.option("--extend", is_flag=True, help="Write templates that extend ifgen's, block by block.")
@@ -83,7 +83,7 @@ def export(name: str, folder: Path | None, extend: bool) -> int:
     return 0
 
 
-@templates.command()
+@templates.command(epilog="Example: ifgen templates diff templates")
 @click.argument("folder", metavar="[DIR]", required=False, type=FOLDER)
 @click.option("--merge", is_flag=True, help="Merge the changes into yours, and mark conflicts.")
 def diff(folder: Path | None, merge: bool) -> int:
@@ -114,7 +114,7 @@ def diff(folder: Path | None, merge: bool) -> int:
     return int(any(comparison.yours_lacks or comparison.unresolved for comparison in compared))
 
 
-@templates.command()
+@templates.command(epilog="Example: ifgen templates check templates")
 @click.argument("folder", metavar="[DIR]", required=False, type=FOLDER)
 @format_option
 def check(folder: Path | None, format_: str) -> int:
@@ -133,7 +133,7 @@ def check(folder: Path | None, format_: str) -> int:
     return terminal.print_findings(found, format_, f"{shown_path(folder)}: no mistakes")
 
 
-@templates.command()
+@templates.command(epilog="Example: ifgen templates context geometry_msgs/msg/Pose")
 @click.argument("name", metavar="TYPE|NODE", required=False, shell_complete=completion.types)
 @include_option
 @click.option("--json", "as_json", is_flag=True, help="Print it as JSON.")

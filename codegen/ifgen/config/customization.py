@@ -31,13 +31,9 @@ class Output:
 
 @dataclass(frozen=True, slots=True)
 class Distributions:
-    """How pip names generated packages: a pattern of names, such as `acme-{package}`.
-
-    `requirements` says what pip installs for other packages that theirs need; nothing, where it is empty.
-    """
+    """How pip names generated packages: a pattern of names, such as `acme-{package}`."""
 
     names: str
-    requirements: Mapping[str, str] = field(default_factory=dict[str, str])
     span: Span | None = field(default=None, compare=False, repr=False)
 
     def name_of(self, package: str) -> str:
@@ -52,6 +48,7 @@ class Customization:
     In a `partial` run, which generates only some packages of the project, outputs may match nothing, and
     outputs per run stay as they are. Without `tests` no tests are generated. `behind` is a second folder of
     templates; those in `templates` win over it. With `distributions`, pip can install generated packages.
+    `requirements` says what pip installs for other packages that these need; nothing, where it is empty.
     `ros_distro` is the target ROS 2, if it is known.
     """
 
@@ -62,6 +59,7 @@ class Customization:
     tests: bool = True
     behind: Path | None = None
     distributions: Distributions | None = None
+    requirements: Mapping[str, str] = field(default_factory=dict[str, str])
     ros_distro: str | None = None
 
     @property

@@ -41,7 +41,7 @@ class Configuration:
     ros_distro: str | None
     _outputs: Mapping[str, Mapping[str, Any]]
     _distributions: str | None
-    _requirements: Mapping[str, str]
+    requirements: Mapping[str, str]
 
     @staticmethod
     def of(file: Path, said: Mapping[str, Any]) -> Configuration:
@@ -64,7 +64,7 @@ class Configuration:
             ros_distro=said["ros_distro"],
             _outputs=dict(said["outputs"]),
             _distributions=said["distributions"],
-            _requirements=dict(said["requirements"]),
+            requirements=dict(said["requirements"]),
         )
 
     def existing(self, key: str, paths: tuple[Path, ...]) -> tuple[Path, ...]:
@@ -88,7 +88,7 @@ class Configuration:
         from ifgen.config.explain import find_key, read_source
 
         place = find_key(read_source(self.file), ("distributions",))
-        return Distributions(self._distributions, self._requirements, place)
+        return Distributions(self._distributions, place)
 
     def outputs(self) -> tuple[Output, ...]:
         """The outputs that are asked for, with their places in the file."""

@@ -104,6 +104,7 @@ def settle(  # noqa: PLR0913 - one for each option
             tests,
             behind,
             found.distributions(),
+            found.requirements,
             found.ros_distro or sourced,
         )
         strict = found.strict if strict is None else strict

@@ -29,9 +29,9 @@ __future__ abc annotationlib argparse array ast asyncio atexit base64 bdb binasc
 bz2 calendar codecs collections compression concurrent contextlib contextvars copy copyreg csv
 ctypes dataclasses datetime decimal difflib dis email encodings enum errno fcntl fnmatch fractions
 functools gc genericpath getpass gettext glob grp gzip hashlib heapq hmac html http importlib
-inspect io ipaddress itertools json keyword linecache locale logging lzma math mimetypes
+inspect io ipaddress itertools json keyword linecache locale logging lzma math mimetypes mmap
 multiprocessing ntpath numbers opcode operator os pathlib pickle pkgutil platform posixpath pprint
-pwd queue quopri random re reprlib secrets select selectors shlex shutil signal site socket ssl stat
+pwd queue quopri random re reprlib secrets select selectors shlex shutil signal site socket sqlite3 ssl stat
 string stringprep struct subprocess sys sysconfig tempfile textwrap threading time token tokenize
 tomllib traceback types typing unicodedata unittest urllib uuid warnings weakref xml zipfile zlib
 zoneinfo

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.types import Array, BoundedSequence, FieldType, NamespacedType, UnboundedSequence
 from ifgen.evolution.edits import InterfaceAdded, InterfaceEdit, InterfaceRemoved, InterfaceRenamed, Versions
-from ifgen.evolution.lock_text import written_parts
+from ifgen.evolution.lock.text import written_parts
 
 
 def versions(old: Interface, new: Interface) -> Iterator[Versions]:

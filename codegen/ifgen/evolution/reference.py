@@ -46,7 +46,7 @@ def _looks_like_a_revision(name: str) -> bool:
 
 def _in_lock(path: Path, new: Version) -> Version:
     """The version in a lock file, which knows no nodes, nor which packages were asked for."""
-    from ifgen.evolution import lock_file  # its parser, which other versions do without
+    from ifgen.evolution.lock import file as lock_file  # its parser, which other versions do without
 
     registry = lock_file.read(path).registry
     return Version({name: None for name in new.packages if name in registry.packages}, registry, None)

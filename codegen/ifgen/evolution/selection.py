@@ -11,7 +11,8 @@ from typing import Final
 
 from ifgen.definition.interfaces import Interface, Registry
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shorten
-from ifgen.evolution import lock_file, version
+from ifgen.evolution import version
+from ifgen.evolution.lock import file as lock_file
 from ifgen.pipeline import lookup
 from ifgen.reading import revisions, storage
 from ifgen.reading.packages import find_packages

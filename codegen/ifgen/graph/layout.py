@@ -28,12 +28,22 @@ class Layout:
     height: float
 
 
-def layout(sizes: Mapping[str, tuple[float, float]], edges: Sequence[Edge]) -> Layout:
-    """Place boxes of these sizes (width, height). The same input leads to the same picture."""
-    order = _acyclic_order(list(sizes), edges)
-    rank = {box: index for index, box in enumerate(order)}
-    forward = {edge: rank[edge[0]] < rank[edge[1]] for edge in edges}
-    columns = _columns(order, [(a, b) if forward[a, b] else (b, a) for a, b in edges])
+def layout(
+    sizes: Mapping[str, tuple[float, float]],
+    edges: Sequence[Edge],
+    columns: Mapping[str, int] | None = None,
+) -> Layout:
+    """Place boxes of these sizes (width, height). The same input leads to the same picture.
+
+    With `columns`, each box is in the column that is given; no edge may stay within one.
+    """
+    if columns is None:
+        order = _acyclic_order(list(sizes), edges)
+        rank: Mapping[str, int] = {box: index for index, box in enumerate(order)}
+        forward = {edge: rank[edge[0]] < rank[edge[1]] for edge in edges}
+        columns = _columns(order, [(a, b) if forward[a, b] else (b, a) for a, b in edges])
+    else:
+        forward = {edge: columns[edge[0]] < columns[edge[1]] for edge in edges}
     chains, rows = _with_bends(columns, edges, forward)
     neighbours: defaultdict[str, list[str]] = defaultdict(list)
     for chain in chains.values():

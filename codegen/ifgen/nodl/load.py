@@ -137,7 +137,12 @@ def _metadata(root: Path) -> PackageMetadata | None:
     if texts is None:
         return None
     return PackageMetadata(
-        texts["version"], texts["description"], texts["maintainer"], texts["email"], texts["license"]
+        texts["version"],
+        texts["description"],
+        texts["maintainer"],
+        texts["email"],
+        texts["license"],
+        package_xml.declared(root),
     )
 
 

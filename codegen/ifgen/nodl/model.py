@@ -13,6 +13,7 @@ from typing import Literal, TypeAlias
 
 from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, Source, Span
+from ifgen.reading.package_xml import Dependency
 
 Style = Literal["callbacks", "lifecycle", "asyncio"]
 MismatchPolicy = Literal["warn", "refuse", "adapt"]
@@ -192,6 +193,7 @@ class PackageMetadata:
     maintainer_name: str = ""
     maintainer_email: str = ""
     license: str = ""
+    dependencies: tuple[Dependency, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

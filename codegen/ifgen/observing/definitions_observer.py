@@ -13,7 +13,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
-from ifgen.dynamic.describing import Endpoint, answers
+from ifgen.dynamic.asking import Endpoint
+from ifgen.dynamic.describing import answers
 from ifgen.observing import definitions_observation
 from ifgen.observing.definitions_observation import Definition, Seen
 from ifgen.observing.definitions_seen import Disagreement, User, disagreements, users

@@ -56,7 +56,7 @@ class _Planning:
     def __init__(self, job: Job, custom: Customization, modules: Modules | None) -> None:
         self._job = job
         self._tests = custom.tests
-        self._distributions = custom.distributions
+        self._distributions, self._requirements = custom.distributions, custom.requirements
         self._modules = modules
         self._facts = Facts(job.registry)
         self._sources = {package.name: earlier.source_of(package, job.output) for package in job.packages}
@@ -97,7 +97,9 @@ class _Planning:
         root = next((package.root for package in job.packages if package.name == target.name), None)
         said = (package_xml.texts(root) if root else None) or {}
         ours = {target.name for target in job.targets} | earlier.packages_in(job.output)
-        yield plan_project(target.name, target.interfaces, target.nodes, said, distributions, ours)
+        yield plan_project(
+            target.name, target.interfaces, target.nodes, said, distributions, self._requirements, ours
+        )
         for path, text in definitions(target.interfaces).items() if target.interfaces else ():
             yield OutputFile(_inner(target) + path, text)
 
@@ -125,7 +127,7 @@ class _Planning:
         from ifgen.generator_py.nodes.package import plan_nodes
         from ifgen.generator_py.tests.package import plan_node_tests
 
-        yield from plan_nodes(package, interfaces, ensured)
+        yield from plan_nodes(package, interfaces, ensured, self._requirements)
         if self._tests and self._job.nodes is not None:
             yield from plan_node_tests(package, self._job.nodes.registry)
 

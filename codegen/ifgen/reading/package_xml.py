@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 NAME: Final = "package.xml"
 
+_WHEN_RUN: Final = frozenset({"depend", "exec_depend", "test_depend"})
+
 INTERFACES: Final = "rosidl_interface_packages"
 """The group of all packages with interfaces."""
 
@@ -72,6 +74,29 @@ def texts(root: Path) -> dict[str, str] | None:
     maintainer = document.find("maintainer")
     email = maintainer.get("email", "") if maintainer is not None else ""
     return {**found, "email": email.strip()}
+
+
+@dataclass(frozen=True, slots=True)
+class Dependency:
+    """A dependency as it is written: its tag, such as `exec_depend`, and attributes, such as a condition."""
+
+    tag: str
+    name: str
+    attributes: tuple[tuple[str, str], ...] = ()
+
+
+def declared(root: Path) -> tuple[Dependency, ...]:
+    """The dependencies in the order of the file, without those that only a build needs."""
+    try:
+        document = _parsed(read_limited(root / NAME))
+    except (OSError, _NoXmlError):
+        return ()
+    found = (
+        Dependency(str(element.tag), _words(element), tuple(element.items()))
+        for element in document
+        if element.tag in _WHEN_RUN
+    )
+    return tuple(dict.fromkeys(dependency for dependency in found if dependency.name))
 
 
 class _NoXmlError(Exception):

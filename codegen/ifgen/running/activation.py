@@ -65,11 +65,19 @@ def folder_around(path: Path) -> Path | None:
 
 
 def import_folders(generated: Path) -> list[str]:
-    """The folders to put on `sys.path` for the packages in a folder: the folder, and each node package."""
+    """The folders to put on `sys.path` for the packages in a folder: the folder, and each node package.
+
+    The nodes of our own humanoid also need their library.
+    """
     if not generated.is_dir():
         return []
-    folders = (entry for entry in sorted(generated.resolve().iterdir()) if is_node_package(entry))
-    return [str(generated.resolve()), *map(str, folders)]
+    place = generated.resolve()
+    libraries = [str(resources.humanoid())] if place == resources.bundled_nodes().resolve() else []
+    return [str(place), *_folders_of_nodes(place), *libraries]
+
+
+def _folders_of_nodes(generated: Path) -> list[str]:
+    return [str(entry) for entry in sorted(generated.iterdir()) if is_node_package(entry)]
 
 
 def is_node_package(folder: Path) -> bool:
@@ -79,18 +87,19 @@ def is_node_package(folder: Path) -> bool:
 
 @cache
 def _bundled_nodes() -> list[str]:
-    return import_folders(resources.bundled_nodes())[1:]
+    nodes = resources.bundled_nodes().resolve()
+    return _folders_of_nodes(nodes) if nodes.is_dir() else []
 
 
 def _with_nodes_of_examples(path: Iterable[str], chosen: Transport) -> Iterator[str]:
-    """The path with the packages of our examples: after `examples/`, if that is on it.
+    """The path with the packages of our humanoid's nodes: after `examples/humanoid`, if that is on it.
 
     Their names are such as `teleop` and `camera_driver`, which other projects have as well.
     """
-    examples = resources.examples().resolve()
+    humanoid = resources.humanoid()
     for entry in path:
         yield entry
-        if Path(entry).resolve() == examples:
+        if Path(entry).resolve() == humanoid:
             yield from _bundled_nodes()
             if chosen == "local":  # beside a real ROS they would hide its message packages
                 yield str(resources.bundled_generated())

@@ -1,7 +1,7 @@
 """Runs several programs in one process, each on a thread that it takes for the main thread of its process.
 
 `ifgen run server.py : client.py 41 1`: they talk through the local transport, which needs them here. What a
-process has once, each program gets as its own, as far as Python allows: see the modules `own_*`. docs/cli.md
+process has once, each program gets as its own, as far as Python allows: see `own/`. docs/cli.md
 says what stays common to all.
 """
 
@@ -20,26 +20,26 @@ from typing import Any
 
 from ifgen.running.companion import Companion, current
 from ifgen.running.ending import INTERRUPTED, PATIENCE, exit_code, is_interruption, tell
-from ifgen.running.own_attributes import OwnAttributes, OwnStreams
-from ifgen.running.own_exits import OwnExits
-from ifgen.running.own_logging import OwnLogging
-from ifgen.running.own_modules import OwnModules
-from ifgen.running.own_signals import OwnSignals
-from ifgen.running.own_threads import OwnThreads
+from ifgen.running.own.attributes import OwnAttributes, OwnStreams, WholeLines
+from ifgen.running.own.exits import OwnExits
+from ifgen.running.own.logging import OwnLogging
+from ifgen.running.own.modules import OwnModules
+from ifgen.running.own.signals import OwnSignals
+from ifgen.running.own.threads import OwnThreads
 from ifgen.running.program import Program
 
 _CLONE_FS = 0x200  # sched.h
 _STEP = 0.2  # [s] on some systems a waiting thread does not notice a signal
 
 
-def run(programs: Sequence[Program]) -> int:
-    """Run programs until the last one ends; returns the worst of their exit codes."""
-    company = _Company(programs)
+def run(programs: Sequence[Program], *, until_all_end: bool = False) -> int:
+    """Run programs until the last one ends, or all of them; returns the worst of their exit codes."""
+    company = _Company(programs, until_all_end=until_all_end)
     return company.run()
 
 
 class _Company:
-    def __init__(self, programs: Sequence[Program]) -> None:
+    def __init__(self, programs: Sequence[Program], *, until_all_end: bool) -> None:
         # Found by name: the toolkit does not depend on an rclpy.
         self._ros = import_module("rclpy.impl.program")
         self._all = [Companion(program, self._ros.Program()) for program in programs]
@@ -51,6 +51,7 @@ class _Company:
         self._streams = {name: getattr(sys, name) for name in ("stdin", "stdout", "stderr")}
         self._signals_seen = 0
         self._process = os.getpid()
+        self._until_all_end = until_all_end
 
     def run(self) -> int:
         """Run them all."""
@@ -68,16 +69,18 @@ class _Company:
                 stack.enter_context(each)
             for companion in self._all:
                 self._modules.add(companion)
-                companion.attributes |= {(sys, name): stream for name, stream in self._streams.items()}
+                for name, stream in self._streams.items():
+                    shared = self._until_all_end and stream is not None and name != "stdin"
+                    companion.attributes[sys, name] = WholeLines(stream) if shared else stream
                 companion.attributes[sys, "path"] = list(self._path)
                 self._threads.start_main(companion, partial(self._live, companion))
             self._wait()
             return max(map(self._code, self._all))
 
     def _wait(self) -> None:
-        """Wait for the last program; then dismiss the others, and wait for those for a while."""
-        last = self._all[-1]
-        while not last.ended.is_set() and not self._signals_seen:
+        """Wait for the last program, or for all; then dismiss the others, and wait for those for a while."""
+        awaited = self._all if self._until_all_end else self._all[-1:]
+        while not all(each.ended.is_set() for each in awaited) and not self._signals_seen:
             self._signals.serve(_STEP)
         if not self._signals_seen:
             for companion in self._all:

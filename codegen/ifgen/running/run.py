@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import sys
 from collections.abc import Generator, Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Literal
 
+from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.running import alone, company, processes
+from ifgen.running import alone, company, lockstep, processes
 from ifgen.running.activation import ActivationError, folder_around, is_node_package, put_on_path
 from ifgen.running.ending import tell
 from ifgen.running.program import find
@@ -19,40 +21,75 @@ from ifgen.running.program import find
 SEPARATOR = ":"
 
 
-def split(words: Sequence[str]) -> list[list[str]]:
-    """The programs on a command line: a file, or `-m` and a module, then arguments. Raises UsageError."""
+def split(words: Sequence[str], generated: Path | None = None) -> list[list[str]]:
+    """The programs on a command line: a file, `-m` and a module, or a package and a node; then arguments.
+
+    Those of packages become files or modules; `generated` has the user's, by default as configured. Raises
+    UsageError.
+    """
     programs: list[list[str]] = [[]]
     for word in words:
         if word == SEPARATOR:
             programs.append([])
         else:
             programs[-1].append(word)
-    for program in programs:
-        if not program or program == ["-m"]:
-            advice = "such as `ifgen run server.py : client.py 41 1`, with spaces around the `:`"
-            raise UsageError([Diagnostic("no-program", "there is no program to run", help=advice)])
-        if program[0] != "-m" and not Path(program[0]).is_file():
-            message, advice = f"there is no file '{program[0]}'", "to run a module, write `-m MODULE`"
-            if program[0].startswith("-"):
-                hint = _meant_option(program[0]) + "`ifgen run --help` lists them"
-                message, advice = f"there is no option '{program[0]}'", hint
-            raise UsageError([Diagnostic("no-program", message, help=advice)])
-    return programs
+    return [_without_package(program, generated or settle().output) for program in programs]
+
+
+def _without_package(program: list[str], generated: Path) -> list[str]:
+    """A program whose package, if it has one, has become its file or module. Raises UsageError."""
+    if not program or program == ["-m"]:
+        advice = "such as `ifgen run server.py : client.py 41 1`, with spaces around the `:`"
+        raise UsageError([Diagnostic("no-program", "there is no program to run", help=advice)])
+    first, *others = program
+    if first == "-m" or Path(first).is_file():
+        return program
+    if first.startswith("-"):
+        hint = _meant_option(first) + "`ifgen run --help` lists them"
+        raise UsageError([Diagnostic("no-program", f"there is no option '{first}'", help=hint)])
+    from ifgen.running.finding import packages  # late: a program that is a file or a module is found without
+
+    package = packages.find(first, generated) if re.fullmatch(r"[\w-]+", first) else None
+    if package is None:
+        advice = "to run a module, write `-m MODULE`; to run a node of a package, `PACKAGE NODE`"
+        if others and re.fullmatch(r"[\w-]+", first):
+            help = packages.missing(first, generated).help
+            raise UsageError([Diagnostic("no-program", f"there is no file or package '{first}'", help=help)])
+        raise UsageError([Diagnostic("no-program", f"there is no file '{first}'", help=advice)])
+    if not others:
+        message = f"'{first}' is a package: name one of its nodes, too"
+        names = ", ".join(sorted(package.executables)) or "none"
+        raise UsageError([Diagnostic("no-program", message, help=f"it has {names}")])
+    found = packages.executable_of(package, others[0])
+    if not found.is_python:
+        advice = f"start it by its path: {found.words[0]}"
+        raise UsageError([Diagnostic("no-program", f"'{others[0]}' is no program in Python", help=advice)])
+    return [*found.words, *others[1:]]
 
 
 def _meant_option(word: str) -> str:
-    close = get_close_matches(word.partition("=")[0], ("--transport", "--generate", "--help"), n=1)
+    close = get_close_matches(
+        word.partition("=")[0], ("--transport", "--lockstep", "--generate", "--help"), n=1
+    )
     return f"did you mean '{close[0]}'? " if close else ""
 
 
 def run(
-    command_lines: Sequence[list[str]], transport: Literal["local", "rclpy", "auto"], generated: Path
+    command_lines: Sequence[list[str]],
+    transport: Literal["local", "rclpy", "auto"],
+    generated: Path,
+    *,
+    in_lockstep: bool = False,
+    until_all_end: bool = False,
 ) -> int:
     """Run programs until the last one ends, and return the worst of their exit codes.
 
     `generated` is a folder with the user's own packages, unless a program is in another; it may be missing.
-    Raises UsageError where there is no such transport, or no such program.
+    `in_lockstep`: each in a process, with one virtual time for all. `until_all_end`: none of them ends the
+    others, where they share a process. Raises UsageError where there is no such transport, or program.
     """
+    if in_lockstep:
+        transport = _transport_of_lockstep(transport)
     files = (Path(words[0]) for words in command_lines if words[0] != "-m")
     own = next(filter(None, map(folder_around, files)), None)
     try:
@@ -64,11 +101,20 @@ def run(
     except (SyntaxError, ValueError) as error:  # of the compiler
         tell(error.with_traceback(None))
         return 1
+    if in_lockstep:
+        return lockstep.run(programs)
     if len(programs) == 1:
         return alone.run(programs[0])
     if chosen == "rclpy":
         return processes.run(programs)
-    return company.run(programs)
+    return company.run(programs, until_all_end=until_all_end)
+
+
+def _transport_of_lockstep(asked: str) -> Literal["local"]:
+    if asked == "rclpy":
+        advice = "leave out one of `--transport rclpy` and `--lockstep`"
+        raise UsageError([Diagnostic("no-transport", "the real rclpy has no lockstep", help=advice)])
+    return "local"
 
 
 def _as_module(words: list[str]) -> list[str]:

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ifgen_runtime.adapters import Adapter, adapter_for
-from ifgen_runtime.codec import deserialize, serialize
+from ifgen_runtime.adapters import Adapter, adapter_for, in_class, unchanged
 from ifgen_runtime.field_types import Field, fields_of
 
 if TYPE_CHECKING:
@@ -50,13 +49,13 @@ def _derived(theirs: type[Any], mine: type[Any]) -> Adapter | None:
         can_go_down = can_go_down and inner.downgrade is not None
         each = _for_each if my_field.is_collection else _for_one
         up[slot] = each(inner.upgrade, inner.old)
-        down[slot] = each(inner.downgrade or _same, my_field.type, their_field.type)
+        down[slot] = each(inner.downgrade or unchanged, my_field.type, their_field.type)
     return Adapter(theirs, mine, _by_fields(mine, up), _by_fields(theirs, down) if can_go_down else None)
 
 
 def _adapter_of_part(theirs: type[Any], mine: type[Any]) -> Adapter | None:
     if theirs.__type_hash__ == mine.__type_hash__:
-        return Adapter(mine, mine, _same, _same)
+        return Adapter(mine, mine, unchanged, unchanged)
     return adapter_between(theirs, mine)
 
 
@@ -90,15 +89,3 @@ def _for_one(convert: Convert, source: type[Any], target: type[Any] | None = Non
 def _for_each(convert: Convert, source: type[Any], target: type[Any] | None = None) -> Convert:
     one = _for_one(convert, source, target)
     return lambda messages: [one(message) for message in messages]
-
-
-def in_class(cls: type[Any], message: Any) -> Any:
-    """A message of another class of the same version as one of `cls`, by way of its bytes."""
-    return message if isinstance(message, cls) else deserialize(serialize(message), cls)
-
-
-def _same(message: Any) -> Any:
-    return message
-
-
-__all__ = ["adapter_between", "adapter_for", "in_class"]

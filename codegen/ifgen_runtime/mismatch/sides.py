@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ifgen_runtime.convert import to_dict
-from ifgen_runtime.type_description import describe, sources, type_name
+from ifgen_runtime.type_description import describe, sources
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +66,3 @@ def definition_from(response: Any) -> Definition:
         raise ValueError(response.failure_reason or "the node does not say why")
     texts = ((known.type_name, known.encoding, known.raw_file_contents) for known in response.type_sources)
     return Definition(to_dict(response.type_description), tuple(texts))
-
-
-__all__ = ["Definition", "Mismatch", "Side", "definition_from", "definition_of", "type_name"]

@@ -22,14 +22,18 @@ def get_packages_with_prefixes() -> dict[str, str]:
 def get_package_prefix(package_name: str) -> str:
     """Return the prefix that a package is installed in, such as `/opt/ros/jazzy`.
 
-    Raises PackageNotFoundError, ValueError if no package can have that name (REP-127), and EnvironmentError
-    if there are no prefixes to search.
+    Raises PackageNotFoundError, and ValueError if no package can have that name (REP-127).
     """
     if re.fullmatch("[a-zA-Z0-9][a-zA-Z0-9_-]+", package_name) is None:
         raise ValueError(f"'{package_name}' is not a valid package name")
+    try:
+        searched = get_search_paths()
+    except OSError as error:
+        # Upstream raises the OSError. Programs do not expect it: where there is a ROS, the variable is set.
+        raise PackageNotFoundError(f"package '{package_name}' not found: {error}") from None
     prefix = has_resource("packages", package_name)
     if prefix is False:
-        raise PackageNotFoundError(f"package '{package_name}' not found, searching: {get_search_paths()}")
+        raise PackageNotFoundError(f"package '{package_name}' not found, searching: {searched}")
     return prefix
 
 
@@ -57,7 +61,7 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
 def _share(package_name: str) -> str:
     try:
         return os.path.join(get_package_prefix(package_name), "share", package_name)
-    except (PackageNotFoundError, OSError):
+    except PackageNotFoundError:
         if source := _without_ros.source_folder(package_name):
             return source
         raise

@@ -3,12 +3,15 @@ from collections.abc import Callable, Iterable
 from types import CapsuleType
 from typing import Any, final
 
+from typing_extensions import Buffer
+
 TYPE_SUPPORT_VERSION: int
 
 @final
 class Parcel:
     def __bytes__(self) -> bytes: ...
 
+def crc32(data: Buffer, value: int = 0, /) -> int: ...  # where the processor can
 def bind(symbols: dict[str, int], /) -> None: ...
 def introspection(members: int, /) -> int: ...
 def message(

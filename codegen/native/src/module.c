@@ -1,5 +1,6 @@
 /* The extension module: what `ifgen_runtime.type_support` calls. Addresses go in and out as integers, since the
  * tables behind them (hashes, descriptions, members) are ctypes structures that the caller keeps alive for good. */
+#include "checksum.h"
 #include "message.h"
 
 
@@ -53,7 +54,7 @@ enum { TYPE_SUPPORT_VERSION = 3 }; /* of the functions above; ifgen_runtime/type
 
 PyMODINIT_FUNC PyInit__native(void) {
   PyObject *module = PyModule_Create(&definition);
-  if (module && (PyModule_AddFunctions(module, codec_methods) ||
+  if (module && (PyModule_AddFunctions(module, codec_methods) || checksum_add(module) ||
                  PyModule_AddIntConstant(module, "TYPE_SUPPORT_VERSION", TYPE_SUPPORT_VERSION)))
     Py_CLEAR(module);
   return module;

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 # Late imports: a request for help needs none of these.
 
 
-@click.command()
+@click.command(epilog="Example: ifgen adapt demo_msgs/msg/Pose --from HEAD~1")
 @click.argument("type_", metavar="TYPE", shell_complete=completion.types)
 @click.option(
     "--from",
@@ -121,7 +121,7 @@ def _open(text: str) -> str:
 
 def _earlier(folder: Path, planned: Planned) -> Iterator[str]:
     """Advice on adapters to the version that is an old one now: how they are chained with this one."""
-    from ifgen.evolution.lock_text import written_parts
+    from ifgen.evolution.lock.text import written_parts
 
     versions = planned.versions
     frozen = planned.shared[1].path.removesuffix(".py")

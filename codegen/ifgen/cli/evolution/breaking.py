@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # Late imports: a request for help needs none of these.
 
 
-@click.command()
+@click.command(epilog="Example: ifgen breaking --against main")
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @click.option(
     "--against",

@@ -30,7 +30,7 @@ _HASH: Final = 23
 """Characters of a hash that fit into a column."""
 
 
-@click.command()
+@click.command(epilog="Example: ifgen diff main:demo_msgs/msg/Pose")
 @click.argument("a", metavar="A", shell_complete=completion.types)
 @click.argument("b", metavar="[B]", required=False, shell_complete=completion.types)
 @include_option

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 # `--locked` that has nothing to do compares nothing.
 
 
-@click.command(cls=WithDepsCommand)
+@click.command(cls=WithDepsCommand, epilog="Example: ifgen lock --with-deps=own")
 @click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
 @include_option
 @with_deps_option
@@ -51,7 +51,7 @@ def lock(
     PATH is a package, a folder of packages, or one .msg, .srv, .action, .idl or .nodl.yaml file. The default
     is the paths in [tool.ifgen] of pyproject.toml.
     """
-    from ifgen.evolution import lock_text
+    from ifgen.evolution.lock import text as lock_text
     from ifgen.pipeline import stages
 
     settings = settle(paths, None, include, with_deps).with_paths()
@@ -74,28 +74,29 @@ def lock(
 
 def condition(settings: Settings) -> Condition:
     """The condition that the interfaces are those in the lock file. Raises InputError if that is missing."""
-    from ifgen.evolution import lock_file
+    from ifgen.evolution.lock import file as lock_file
 
     source = lock_file.source(_path(settings))
 
     def compare(registries: Iterable[Registry]) -> None:
-        from ifgen.evolution import lock_text, locked
+        from ifgen.evolution.lock import comparison
+        from ifgen.evolution.lock import text as lock_text
 
         registries = tuple(registries)
         if lock_text.text(registries) != source.text:  # faster than to read it, and usually the end
-            locked.check(lock_file.parse(source), registries)
+            comparison.check(lock_file.parse(source), registries)
 
     return Condition(hashlib.sha256(source.text.encode()).hexdigest(), compare)
 
 
 def _path(settings: Settings) -> Path:
-    from ifgen.evolution.lock_text import NAME
+    from ifgen.evolution.lock.text import NAME
 
     return (settings.file.parent if settings.file else Path.cwd()) / NAME
 
 
 def _check(path: Path, text: str, *, quiet: bool) -> int:
-    from ifgen.evolution import lock_file
+    from ifgen.evolution.lock import file as lock_file
 
     source = lock_file.source(path)
     if source.text == text:
@@ -110,7 +111,7 @@ def _check(path: Path, text: str, *, quiet: bool) -> int:
 
 def _changes(path: Path, text: str) -> str:
     """The difference between the file and its new text, in words; empty if there is none."""
-    from ifgen.evolution import lock_file
+    from ifgen.evolution.lock import file as lock_file
 
     if not path.exists():
         return "written"

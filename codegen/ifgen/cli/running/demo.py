@@ -18,17 +18,34 @@ from ifgen.config import installing
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.running.activation import ActivationError, put_on_path
 
-_SCENARIOS = ("all", "walk", "dance", "push", "stop")
 _PICTURES = (".gif", ".png")
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+def _complete(context: click.Context, parameter: click.Parameter, start: str) -> list[str]:
+    """Complete the names of the scenarios that come with the robot."""
+    paths = (resources.humanoid() / "config/scenarios").glob(f"{start}*.yaml")
+    return sorted(path.stem for path in paths)
+
+
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Example: ifgen demo --scenario walk --headless",
+)
 @click.option(
     "--scenario",
-    type=click.Choice(_SCENARIOS),
+    metavar="NAME",
     default="all",
     show_default=True,
-    help="What to show: a bit of everything, or one thing.",
+    shell_complete=_complete,
+    help="What to show: all, dance, push, stop, walk, or a .yaml file of yours.",
+)
+@click.option("--idle", is_flag=True, help="No scenario: the robot stands, and waits for other programs.")
+@click.option("--without", metavar="NODE", multiple=True, help="Leave out a node; may be repeated.")
+@click.option(
+    "--replace",
+    metavar="NODE=PLACE",
+    multiple=True,
+    help="Your own node instead: a .py file or a module; may be repeated.",
 )
 @click.option(
     "--transport",
@@ -64,6 +81,9 @@ _PICTURES = (".gif", ".png")
 )
 def demo(  # noqa: PLR0913, PLR0917  # one for each option
     scenario: str,
+    idle: bool,
+    without: tuple[str, ...],
+    replace: tuple[str, ...],
     transport: Literal["local", "rclpy"],
     headless: bool,
     record: Path | None,
@@ -88,6 +108,9 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     humanoid = import_module("humanoid.show.demo")
     options = humanoid.Options(
         scenario=scenario,
+        idle=idle,
+        without=without,
+        replace=replace,
         transport=transport,
         record=record,
         web=port if web else None,
@@ -107,8 +130,9 @@ def _problem(context: click.Context, record: Path | None) -> str:
     given = {
         name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT
     }
-    if {"headless", "web"} <= given:
-        return "--headless cannot be used with --web"
+    for one, other in (("headless", "web"), ("idle", "scenario")):
+        if {one, other} <= given:
+            return f"--{one} cannot be used with --{other}"
     for option, needs in (("port", "web"), ("joint_map", "model")):
         if option in given and needs not in given:
             return f"--{option.replace('_', '-')} needs --{needs}"
@@ -126,13 +150,13 @@ def _problem(context: click.Context, record: Path | None) -> str:
 
 def _prepare(transport: Literal["local", "rclpy"]) -> None:
     """Let the demo find what it needs. Raises UsageError with what is missing."""
-    examples = resources.examples()
-    if not (examples / "humanoid").is_dir():
-        raise UsageError([Diagnostic("no-demo", f"the examples are not in {examples}")])
+    humanoid = resources.humanoid()
+    if not humanoid.is_dir():
+        raise UsageError([Diagnostic("no-demo", f"the humanoid is not in {humanoid}")])
     if find_spec("mujoco") is None:
         advice = f"run `{installing.add_extra('sim')}`"
         raise UsageError([Diagnostic("no-mujoco", "the demo needs MuJoCo", help=advice)])
-    sys.path.insert(0, str(examples))
+    sys.path.insert(0, str(humanoid))
     try:
         put_on_path(transport, None)
     except ActivationError as error:

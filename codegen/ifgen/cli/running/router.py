@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 _LOOK_EVERY = 1.0  # [s], for the routers that this one is to be connected to
 
 
-@click.command(context_settings={"help_option_names": ["-h", "--help"]})
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Example: ifgen router --listen tcp/127.0.0.1:7450",
+)
 @click.option(
     "--listen",
     metavar="ENDPOINT",

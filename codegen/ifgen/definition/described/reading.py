@@ -36,8 +36,13 @@ _LONGEST_NAME: Final = 255
 _FIELD_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _TAKEN: Final = frozenset({"SLOT_TYPES", "get_fields_and_field_types", "mro"})
 
-_SERVICE: Final = {"request_message": "_Request", "response_message": "_Response", "event_message": "_Event"}
-_ACTION: Final = {
+SERVICE_PARTS: Final = {
+    "request_message": "_Request",
+    "response_message": "_Response",
+    "event_message": "_Event",
+}
+"""The fields of a service in a description, and how their types are called after it."""
+ACTION_PARTS: Final = {
     "goal": "_Goal",
     "result": "_Result",
     "feedback": "_Feedback",
@@ -45,6 +50,7 @@ _ACTION: Final = {
     "get_result_service": "_GetResult",
     "feedback_message": "_FeedbackMessage",
 }
+"""The same of an action."""
 
 
 def read(document: object, type_hash: str | None = None) -> tuple[Described, Registry]:
@@ -140,7 +146,7 @@ class _Reader:
             raise BadDescription(f"{self._name} needs {type_name}, which is not described")
         package, folder, name = _split(type_name)
         parts = [self._type(type_name + suffix) for suffix in _parts(type_name, fields).values()]
-        of_action = len(parts) == len(_ACTION)
+        of_action = len(parts) == len(ACTION_PARTS)
         kinds = (
             [Message, Message, Message, Service, Service, Message] if of_action else [Message] * len(parts)
         )
@@ -153,7 +159,7 @@ class _Reader:
 def _parts(type_name: str, fields: Sequence[Field]) -> Mapping[str, str]:
     """The parts, by the names of their fields, if a type is a service or an action; empty for a message."""
     package, folder, name = _split(type_name)
-    for kind in (_SERVICE, _ACTION):
+    for kind in (SERVICE_PARTS, ACTION_PARTS):
         expected = [(part, NamespacedType(package, folder, name + suffix)) for part, suffix in kind.items()]
         if folder != "msg" and [(field.name, field.type) for field in fields] == expected:
             return kind

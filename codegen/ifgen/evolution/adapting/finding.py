@@ -15,8 +15,8 @@ from ifgen.definition.described.reading import read as read_description
 from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.type_description import TypeHashes, type_hash
 from ifgen.diagnostics import Diagnostic, InputError, Source, UsageError, shorten
-from ifgen.evolution import lock_file
-from ifgen.evolution.lock_text import NAME, written_parts
+from ifgen.evolution.lock import file as lock_file
+from ifgen.evolution.lock.text import NAME, written_parts
 from ifgen.evolution.selection import Selection, select, split
 from ifgen.generator_py.names import interface_name
 from ifgen.reading import revisions

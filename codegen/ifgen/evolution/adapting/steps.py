@@ -52,6 +52,12 @@ class Function:
         """Whether something is left to decide."""
         return bool(self.lost) or any(step.question for step in self.steps)
 
+    def converted(self) -> Iterator[tuple[str, str]]:
+        """The attributes of the target whose values are known from the source, with the text of each."""
+        for step in self.steps:
+            if step.conversion is not None and not step.question:
+                yield attribute_name(step.target), step.conversion.text
+
 
 class Functions:
     """The functions of a module: those that were asked for, and those that these call."""

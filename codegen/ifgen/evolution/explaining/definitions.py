@@ -18,7 +18,7 @@ from ifgen.definition.type_description import Described, TypeHashes, described_t
 from ifgen.diagnostics import InputError, Source, UsageError
 from ifgen.evolution.explaining import places
 from ifgen.evolution.explaining.places import Place
-from ifgen.evolution.lock_text import NAME
+from ifgen.evolution.lock.text import NAME
 
 _MOST_TEXT: Final = 2**17
 """Characters of the sources that a node may send."""
@@ -132,7 +132,7 @@ class Installed:
         yield from self._locked(type_name, type_hash, len(every))
 
     def _locked(self, type_name: str, type_hash: str, place: int) -> Iterator[Known]:
-        from ifgen.evolution import lock_file  # its parser, which most searches do without
+        from ifgen.evolution.lock import file as lock_file  # its parser, which most searches do without
 
         file = self._settings.file
         path = (file.parent if file is not None else Path.cwd()) / NAME

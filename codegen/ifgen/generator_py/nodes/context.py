@@ -239,8 +239,10 @@ class NodePackageFiles:
     """The contents of package.xml, setup.py and the like; `..._literal` are Python literals.
 
     `registered`, `descriptions` and `configs` are literals of lists of files: those for the ament index, the
-    descriptions, and the parameter files (empty if there are none). `ensured` are the literals of the
-    packages that the runtime brings where need be.
+    descriptions, and the parameter files (empty if there are none). `depends` are the packages whose
+    interfaces it uses, `further` the elements of other dependencies, and `requires` is a literal of a list of
+    what pip installs for these. `ensured` are the literals of the packages that the runtime brings where need
+    be.
     """
 
     name: str
@@ -256,6 +258,8 @@ class NodePackageFiles:
     license: str
     license_literal: str
     depends: tuple[str, ...]
+    further: tuple[str, ...]
+    requires: str
     registered: str
     descriptions: str
     configs: str

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 from ifgen.definition.interfaces import InterfacePackage
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.nodes.classes import base_module, user_module
+from ifgen.generator_py.nodes.context import NodePackageFiles
 from ifgen.generator_py.nodes.custom_checks import checks_modules
 from ifgen.generator_py.nodes.package_files import node_files, package_files, resource_name
 from ifgen.generator_py.nodes.parameters import declared, parameters_module
@@ -15,15 +17,20 @@ from ifgen.nodl.model import NodeDescription, NodePackage
 
 
 def plan_nodes(
-    package: NodePackage, interfaces: InterfacePackage | None = None, ensured: tuple[str, ...] = ()
+    package: NodePackage,
+    interfaces: InterfacePackage | None = None,
+    ensured: tuple[str, ...] = (),
+    requirements: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[Artifact, ...]:
     """The files of a package with nodes that are generated each time.
 
     `interfaces` are those of the package, if it has any. Their modules are not among the files, and are in
     the inner folder, which has the name of the package. On import, it makes sure that the packages `ensured`
-    can be imported.
+    can be imported. `requirements` says what pip installs for packages that its package.xml declares.
     """
-    return tuple(_artifacts(package, interfaces, ensured))
+    files = package_files(package, interfaces, requirements)
+    files = replace(files, ensured=tuple(f'"{name}"' for name in ensured))
+    return tuple(_artifacts(package, interfaces, files))
 
 
 def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
@@ -41,11 +48,10 @@ def plan_users_files(package: NodePackage) -> tuple[Artifact, ...]:
 
 
 def _artifacts(
-    package: NodePackage, interfaces: InterfacePackage | None, ensured: tuple[str, ...]
+    package: NodePackage, interfaces: InterfacePackage | None, files: NodePackageFiles
 ) -> Iterator[Artifact]:
     inner = package.name
-    files = package_files(package, interfaces)
-    variables = {"package": replace(files, ensured=tuple(f'"{name}"' for name in ensured))}
+    variables = {"package": files}
     yield _artifact(package, "package.xml", "package.xml", **variables)
     yield _artifact(package, "setup.py", "setup.py", **variables)
     yield _artifact(package, "setup.cfg", "setup.cfg", **variables)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from html import escape
 
 from ifgen.definition.interfaces import InterfacePackage, Message
 from ifgen.definition.references import references
@@ -12,13 +13,23 @@ from ifgen.generator_py.nodes.documents import config_lines, description_lines
 from ifgen.generator_py.nodes.parameters import declared
 from ifgen.generator_py.nodes.text import literal, quoted
 from ifgen.nodl.model import NodeDescription, NodePackage, PackageMetadata
+from ifgen.reading.package_xml import Dependency
 
+_OF_ALL = {"rclpy", "launch", "launch_ros", "python3-hypothesis", "python3-pytest"}
 _VERSION = re.compile(r"\d+\.\d+\.\d+")
 
 
-def package_files(package: NodePackage, interfaces: InterfacePackage | None) -> NodePackageFiles:
-    """The contents of the files of a package; `interfaces` are those beside its nodes."""
+def package_files(
+    package: NodePackage, interfaces: InterfacePackage | None, requirements: Mapping[str, str]
+) -> NodePackageFiles:
+    """The contents of the files of a package; `interfaces` are those beside its nodes.
+
+    `requirements` says what pip installs for packages that its package.xml declares.
+    """
     metadata = package.metadata or PackageMetadata()
+    depends = tuple(sorted(uses(package, interfaces) - {package.name}))
+    further = further_dependencies(metadata, {*depends, package.name})
+    required = requirements_of(further, requirements)
     description = metadata.description or f"Nodes of {package.name}."
     maintainer = metadata.maintainer_name or f"maintainers of {package.name}"
     email = metadata.maintainer_email or "maintainers@example.com"
@@ -37,7 +48,9 @@ def package_files(package: NodePackage, interfaces: InterfacePackage | None) -> 
         maintainer_email_literal=quoted(email),
         license=license_,
         license_literal=quoted(license_),
-        depends=tuple(sorted(uses(package, interfaces) - {package.name})),
+        depends=depends,
+        further=tuple(map(_element, further)),
+        requires=_list(("setuptools", *required)),
         registered=_list(f"resource/{resource_name(package, node)}" for node in package.nodes),
         descriptions=_list(f"nodl/{node.name}.nodl.yaml" for node in package.nodes),
         configs=_list(f"config/{node.name}.yaml" for node in with_parameters) if with_parameters else "",
@@ -80,6 +93,22 @@ def uses(nodes: NodePackage | None, interfaces: InterfacePackage | None) -> set[
         for message in (interface,) if isinstance(interface, Message) else interface.messages:
             found.update(type_.package for _, type_ in references(message))
     return found
+
+
+def further_dependencies(metadata: PackageMetadata, known: set[str]) -> tuple[Dependency, ...]:
+    """The dependencies in a package.xml, less those that each package of nodes, or this one, has anyway."""
+    return tuple(found for found in metadata.dependencies if found.name not in known | _OF_ALL)
+
+
+def requirements_of(dependencies: Iterable[Dependency], requirements: Mapping[str, str]) -> list[str]:
+    """The requirements for pip of those dependencies that the package runs with and the settings name."""
+    running = (found for found in dependencies if found.tag != "test_depend")
+    return [requirement for found in running if (requirement := requirements.get(found.name))]
+
+
+def _element(dependency: Dependency) -> str:
+    attributes = "".join(f' {key}="{escape(value)}"' for key, value in dependency.attributes)
+    return f"<{dependency.tag}{attributes}>{escape(dependency.name)}</{dependency.tag}>"
 
 
 def _list(names: Iterable[str]) -> str:

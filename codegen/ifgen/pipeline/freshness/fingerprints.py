@@ -49,7 +49,7 @@ def of_customization(custom: Customization) -> bytes:
     is_old = ros_distro.is_old(custom.ros_distro)
     if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_old:
         return b""
-    said = (custom.outputs, custom.tests, custom.distributions, is_old)
+    said = (custom.outputs, custom.tests, custom.distributions, sorted(custom.requirements.items()), is_old)
     hasher = hashlib.sha256(repr(said).encode(errors="surrogateescape"))
     paths = [path for folder in custom.folders for _, path in _files_below(folder)]
     for path in (*paths, *([custom.filters] if custom.filters else ())):

@@ -16,8 +16,11 @@ from rclpy.node import Node
 from ifgen_runtime.mismatch.remembered import Once, Remembered
 from ifgen_runtime.mismatch.sides import Definition, definition_from
 
-_PATIENCE: Final = 0.5
-"""Seconds that all answers have: the warning is to come within one."""
+_PATIENCE: Final = 1.0
+"""Seconds for nodes to be found: those of older distributions have nobody who answers."""
+
+_PATIENCE_ONCE_ASKED: Final = 3.0
+"""Seconds that all answers have where somebody has been asked: on a busy machine, they take that long."""
 
 _POLL: Final = 0.02
 """Seconds between two looks at whether a node can be asked."""
@@ -58,8 +61,12 @@ class Asker:
         return self._answers.get(type_hash)
 
     def _converse(self, node: Any, executor: Any, questions: list[_Open]) -> None:
-        until = time.monotonic() + _PATIENCE
-        while questions and time.monotonic() < until and not self._stop.is_set():
+        began = time.monotonic()
+        while questions and not self._stop.is_set():
+            waited = time.monotonic() - began
+            is_asked = any(question.is_asked for question in questions)
+            if waited > (_PATIENCE_ONCE_ASKED if is_asked else _PATIENCE):
+                return
             executor.spin_once(timeout_sec=_POLL)
             for question in tuple(questions):
                 if question.look():
@@ -96,6 +103,11 @@ class _Open:
         self._type = import_module("type_description_interfaces.srv").GetTypeDescription
         self._client = node.create_client(self._type, f"{asked.node}/get_type_description")
         self._future: Any = None
+
+    @property
+    def is_asked(self) -> bool:
+        """Whether the node has been found, and is to answer."""
+        return self._future is not None
 
     def look(self) -> bool:
         """Whether the question is answered, one way or the other."""

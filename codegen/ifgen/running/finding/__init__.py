@@ -1,0 +1,1 @@
+"""Finds programs by the names of their packages."""

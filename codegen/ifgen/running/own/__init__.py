@@ -1,0 +1,1 @@
+"""Things of which Python has one in a process, for each of several programs in it."""

@@ -1,0 +1,292 @@
+"""Where the messages of an MCAP file are: by its summary, or by a walk through the whole file."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO, Final
+
+from ifgen_runtime.bag import mcap_records as records
+from ifgen_runtime.bag.checksum import crc32
+from ifgen_runtime.bag.compression import LARGEST, Undecodable, decompress
+from ifgen_runtime.bag.errors import BagError, Damages
+from ifgen_runtime.bag.mcap_records import (
+    FOOTER,
+    HEAD,
+    MAGIC,
+    BadRecord,
+    ChannelRecord,
+    ChunkHead,
+    Opcode,
+    SchemaRecord,
+    Statistics,
+)
+
+_RUN: Final = 2**22
+"""Bytes of messages outside chunks that are read at once."""
+
+_HEAD_OF_CHUNK: Final = 256
+"""Bytes that hold the head of a chunk's content, whatever its compression is called."""
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """A part of the file with messages: a chunk, or a run of records outside chunks."""
+
+    start: int
+    end: int
+    offset: int
+    length: int
+    is_chunk: bool
+    channels: frozenset[int] | None = None
+    """The numbers of the channels in it; None if the file does not say."""
+
+
+@dataclass(slots=True)
+class Layout:
+    """All that is known about a file before its messages are read."""
+
+    schemas: dict[int, SchemaRecord] = field(default_factory=dict[int, SchemaRecord])
+    channels: dict[int, ChannelRecord] = field(default_factory=dict[int, ChannelRecord])
+    pieces: list[Piece] = field(default_factory=list[Piece])
+    counts: Counter[int] = field(default_factory=Counter[int])
+
+    def note(self, opcode: int, content: bytes) -> None:
+        """Note a schema or a channel; the first of a number counts."""
+        if opcode == Opcode.SCHEMA:
+            schema = records.schema(content)
+            self.schemas.setdefault(schema.id, schema)
+        elif opcode == Opcode.CHANNEL:
+            channel = records.channel(content)
+            self.channels.setdefault(channel.id, channel)
+
+
+@dataclass(slots=True)
+class OpenFile:
+    """An MCAP file that is open, with its size when it was opened."""
+
+    path: Path
+    file: BinaryIO
+    size: int
+    damages: Damages
+
+    def read(self, offset: int, size: int) -> bytes:
+        """Bytes of the file. Raises BadRecord if they are not all there."""
+        if size > LARGEST:
+            raise BadRecord(
+                f"a record of {size:,} bytes is larger than the {LARGEST:,} that ifgen reads at once"
+            )
+        if offset < 0 or offset + size > self.size:
+            raise BadRecord("a record reaches beyond the end of the file")
+        try:
+            self.file.seek(offset)
+            found = self.file.read(size)
+        except OSError as error:
+            raise BadRecord(f"the file cannot be read: {error.strerror}") from None
+        if len(found) < size:
+            raise BadRecord("the file has become shorter")
+        return found
+
+    def head(self, offset: int) -> tuple[int, int]:
+        """The opcode and the length of the content of the record at an offset."""
+        opcode, length = HEAD.unpack(self.read(offset, HEAD.size))
+        if offset + HEAD.size + length > self.size:
+            raise BadRecord(f"a record of {length:,} bytes reaches beyond the end of the file")
+        return opcode, length
+
+    def chunk_head(self, offset: int, length: int) -> ChunkHead:
+        """The head of the chunk whose content is at an offset."""
+        return records.chunk(self.read(offset, min(length, _HEAD_OF_CHUNK)), offset, length)
+
+    def chunk(self, head: ChunkHead) -> bytes:
+        """The records in a chunk. Raises BadRecord if they are damaged."""
+        try:
+            found = decompress(head.compression, self.read(head.data, head.data_size), head.size)
+        except Undecodable as error:
+            raise BadRecord(str(error)) from None
+        if head.crc and crc32(found) != head.crc:
+            raise BadRecord("the checksum of a chunk does not fit its content")
+        return found
+
+
+def layout_of(file: OpenFile) -> Layout:
+    """The layout of a file: that of its summary, where this is sound, or what is found in it."""
+    if file.read(0, min(len(MAGIC), file.size)) != MAGIC:
+        raise BagError(f"{file.path}: this is no MCAP file: it does not begin as one")
+    reason = ""
+    try:
+        found = _by_summary(file)
+        if found is not None:
+            return found
+    except BadRecord as error:
+        reason = str(error)
+    found, place = Layout(), 0
+    try:
+        for position in _walk(file, found):
+            place = position
+    except BadRecord as error:
+        file.damages.note(file.path, place, f"{error}; {found.counts.total():,} messages are before it")
+    else:
+        if reason:
+            file.damages.note(
+                file.path, file.size, f"{reason}; {found.counts.total():,} messages are before it"
+            )
+    return found
+
+
+def _by_summary(file: OpenFile) -> Layout | None:
+    """The layout by the summary; None if the file has none, or not all that is needed."""
+    tail = HEAD.size + FOOTER.size + len(MAGIC)
+    if file.size < len(MAGIC) + tail or file.read(file.size - len(MAGIC), len(MAGIC)) != MAGIC:
+        raise BadRecord(
+            "the file was not completed, so it has no summary: it is cut off, or the recorder was killed"
+        )
+    at = file.size - tail
+    opcode, length = file.head(at)
+    if opcode != Opcode.FOOTER or length != FOOTER.size:
+        raise BadRecord("the footer is not where it should be")
+    start, _, crc = FOOTER.unpack(file.read(at + HEAD.size, FOOTER.size))
+    if not start:
+        return None
+    if not len(MAGIC) <= start <= at:
+        raise BadRecord("the summary is not where the footer says")
+    summary = file.read(start, at - start)
+    if crc and crc32(file.read(at, HEAD.size + 16), crc32(summary)) != crc:
+        raise BadRecord("the checksum of the summary does not fit its content")
+    return _summary(file, summary, start)
+
+
+def _summary(file: OpenFile, summary: bytes, end: int) -> Layout | None:
+    layout = Layout()
+    chunks: list[records.ChunkIndex] = []
+    said: Statistics | None = None
+    for opcode, content, _ in records_in(summary):
+        if opcode == Opcode.CHUNK_INDEX:
+            chunks.append(records.chunk_index(content))
+        elif opcode == Opcode.STATISTICS:
+            said = records.statistics(content)
+        else:
+            layout.note(opcode, content)
+    if said is None or len(chunks) != said.chunks or not layout.channels.keys() >= said.by_channel.keys():
+        return None
+    chunks.sort(key=lambda chunk: chunk.offset)
+    position = len(MAGIC)
+    for chunk in chunks:
+        if chunk.offset < position or chunk.offset + chunk.length + chunk.indexes_length > end:
+            raise BadRecord("the summary says that a chunk is where none can be")
+        layout.pieces += _outside(file, position, chunk.offset, layout)
+        channels = chunk.channels or None
+        layout.pieces.append(Piece(chunk.start, chunk.end, chunk.offset, chunk.length, True, channels))
+        position = chunk.offset + chunk.length + chunk.indexes_length
+    layout.pieces += _outside(file, position, end, layout)
+    layout.counts = Counter(said.by_channel)
+    return layout
+
+
+def records_in(data: bytes) -> Iterator[tuple[int, bytes, int]]:
+    """The opcodes, contents and offsets of records. Raises BadRecord where one reaches beyond the end."""
+    position = 0
+    while position < len(data):
+        if position + HEAD.size > len(data):
+            raise BadRecord("the head of a record reaches beyond the end")
+        opcode, length = HEAD.unpack_from(data, position)
+        end = position + HEAD.size + length
+        if end > len(data):
+            raise BadRecord("a record reaches beyond the end")
+        yield opcode, data[position + HEAD.size : end], position
+        position = end
+
+
+def _outside(file: OpenFile, position: int, end: int, layout: Layout, count: bool = False) -> Iterator[Piece]:
+    """The runs of messages between two offsets; what is no message is skipped, schemas and channels noted."""
+    first = position
+    times: list[int] = []
+    while position < end:
+        opcode, length = file.head(position)
+        after = position + HEAD.size + length
+        if opcode == Opcode.MESSAGE:
+            fields = records.MESSAGE.unpack(file.read(position, records.MESSAGE.size))
+            times.append(fields[4])
+            if count:
+                layout.counts[fields[2]] += 1
+        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            layout.note(opcode, file.read(position + HEAD.size, length))
+        if opcode in (Opcode.DATA_END, Opcode.FOOTER):
+            after = end
+        if times and (opcode != Opcode.MESSAGE or after - first > _RUN or after >= end):
+            stop = after if opcode == Opcode.MESSAGE else position
+            yield Piece(min(times), max(times), first, stop - first, False)
+            first, times = after, list[int]()
+        if not times:
+            first = after
+        position = after
+
+
+def _walk(file: OpenFile, layout: Layout) -> Iterator[int]:
+    """Fill the layout in. Yields the offset of each record before it is read, up to the end or to damage."""
+    position = len(MAGIC)
+    yield position
+    while position < file.size:
+        if file.size - position == len(MAGIC) and file.read(position, len(MAGIC)) == MAGIC:
+            return
+        opcode, length = file.head(position)
+        after = position + HEAD.size + length
+        if opcode == Opcode.CHUNK:
+            _walk_chunk(file, position, length, layout)
+        elif opcode == Opcode.MESSAGE:
+            after = _run_end(file, position)
+            layout.pieces += _outside(file, position, after, layout, count=True)
+        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+            layout.note(opcode, file.read(position + HEAD.size, length))
+        elif opcode in (Opcode.DATA_END, Opcode.FOOTER):
+            return
+        position = after
+        yield position
+
+
+def _run_end(file: OpenFile, position: int) -> int:
+    """The end of a run of messages; of the sound ones, if there are others."""
+    begin = position
+    while position < file.size and position - begin < _RUN:
+        try:
+            opcode, length = file.head(position)
+            if opcode != Opcode.MESSAGE or length < records.MESSAGE.size - HEAD.size:
+                break
+        except BadRecord:
+            break
+        position += HEAD.size + length
+    if position == begin:
+        raise BadRecord("a message is shorter than it can be")
+    return position
+
+
+def _walk_chunk(file: OpenFile, position: int, length: int, layout: Layout) -> None:
+    head = file.chunk_head(position + HEAD.size, length)
+    data = file.chunk(head)
+    times: list[int] = []
+    channels: Counter[int] = Counter()
+    for opcode, content, _ in records_in(data):
+        if opcode == Opcode.MESSAGE:
+            if len(content) < records.MESSAGE.size - HEAD.size:
+                raise BadRecord("a message is shorter than it can be")
+            channels[int.from_bytes(content[:2], "little")] += 1
+            times.append(int.from_bytes(content[6:14], "little"))
+        else:
+            layout.note(opcode, content)
+    layout.counts += channels
+    if times:
+        whole = HEAD.size + length
+        piece = Piece(min(times), max(times), position, whole, True, frozenset(channels))
+        layout.pieces.append(piece)
+
+
+def opened(path: Path, damages: Damages) -> OpenFile:
+    """Open a file for reading. Raises BagError if that fails."""
+    try:
+        file = path.open("rb")
+        return OpenFile(path, file, os.fstat(file.fileno()).st_size, damages)
+    except OSError as error:
+        raise BagError(f"{path}: cannot be opened: {error.strerror}") from None

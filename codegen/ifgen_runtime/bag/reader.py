@@ -1,0 +1,133 @@
+"""Recordings, as `Bag` shows them."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Iterator, Mapping
+from difflib import get_close_matches
+from os import PathLike
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from ifgen_runtime.bag.errors import BagError, Damage, Damages
+from ifgen_runtime.bag.messages import Messages
+from ifgen_runtime.bag.store import Store
+from ifgen_runtime.bag.topics import Channel, Recorded, Topic, Wanted
+
+
+class Bag:
+    """A recording: a `.mcap` or `.db3` file, or a folder of them as `ros2 bag record` makes it.
+
+    `path` is never changed. With `strict`, damage raises BagError; otherwise all that can be read is, and a
+    BagWarning says what cannot. With `views`, sequences of numbers are numpy arrays that show the bytes of
+    their message, as with `deserialize(..., views=True)`: images are read with one copy less. `classes` are
+    the classes to use, by type name, in place of those that would be found.
+
+    Close a bag, or use it in a `with` statement; what is forgotten is closed, too.
+    """
+
+    def __init__(
+        self,
+        path: str | PathLike[str],
+        *,
+        strict: bool = False,
+        views: bool = False,
+        classes: Mapping[str, type[Any]] | None = None,
+    ) -> None:
+        self.path = Path(path)
+        """The file or folder."""
+        self._store = Store(self.path, Damages(strict), classes or {}, views)
+        self._finalize = weakref.finalize(self, self._store.close)
+        self.topics: Mapping[str, Topic] = self._store.topics
+        """The topics by name, in the order of their names."""
+        sources = self._store.recording.sources
+        self.start: int | None = min((s.start for s in sources if s.start is not None), default=None)
+        """When the first message was received [ns since 1970]; None if there are no messages."""
+        self.end: int | None = max((s.end for s in sources if s.end is not None), default=None)
+        """When the last message was received [ns since 1970]."""
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files of the recording, in the order in which its metadata names them."""
+        return tuple(self._store.recording.files)
+
+    @property
+    def ros_distro(self) -> str:
+        """The distribution of ROS that the metadata names; empty if it names none."""
+        return self._store.recording.ros_distro
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """All channels: one for each topic and definition in each file."""
+        return tuple(channel for source in self._store.recording.sources for channel in source.channels)
+
+    @property
+    def damage(self) -> tuple[Damage, ...]:
+        """The damage that was met so far."""
+        return tuple(self._store.damages.found)
+
+    def __len__(self) -> int:
+        """All messages, by what the files say about themselves."""
+        return sum(topic.count for topic in self.topics.values())
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __iter__(self) -> Iterator[Recorded]:
+        """All messages with their times, in the order in which they were received."""
+        return self.recorded()
+
+    def __contains__(self, topic: object) -> bool:
+        return topic in self.topics
+
+    def __getitem__(self, topic: str) -> Messages:
+        """The messages of a topic. Raises BagError if there is no such topic."""
+        self._require([topic])
+        return Messages(self._store, Wanted(frozenset([topic])), topic)
+
+    def recorded(self, *topics: str, start: int | None = None, end: int | None = None) -> Iterator[Recorded]:
+        """The messages of these topics (of all, if none is named) that were received in [start, end) [ns]."""
+        self._require(topics)
+        return self._store.recorded(Wanted(frozenset(topics) or None, start, end))
+
+    def entries(
+        self, *topics: str, start: int | None = None, end: int | None = None
+    ) -> Iterator[tuple[int, int, Channel, bytes]]:
+        """The same messages without anything around them: received and published [ns], channel, bytes.
+
+        Bytes are those that were published, also where each message was compressed by itself.
+        """
+        self._require(topics)
+        return self._store.entries(Wanted(frozenset(topics) or None, start, end))
+
+    def class_for(self, channel: Channel) -> type[Any]:
+        """The class of a channel's messages. Raises BagError if there is none."""
+        return self._store.class_for(channel)
+
+    def class_of(self, topic: str) -> type[Any]:
+        """The class of a topic's messages. Raises BagError if there is none, or if the topic has two."""
+        self._require([topic])
+        return self._store.class_of(topic)
+
+    def _require(self, topics: tuple[str, ...] | list[str]) -> None:
+        for topic in topics:
+            if topic not in self.topics:
+                near = get_close_matches(topic, self.topics, 3, 0.5) or list(self.topics)[:3]
+                known = f"it has {', '.join(near)}" if near else "it has no topics"
+                raise BagError(f"{self.path}: there is no topic {topic!r}: {known}")
+
+    def close(self) -> None:
+        """Close the files."""
+        self._finalize()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<Bag {str(self.path)!r}: {len(self)} messages of {len(self.topics)} topics>"

@@ -1,0 +1,1 @@
+"""`ifgen action`: the actions of a running system, and goals for them."""

@@ -1,0 +1,87 @@
+"""The verbs of `ifgen action`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from ifgen_tools import completion, options
+from ifgen_tools.group import ToolGroup
+
+# Late imports: each verb loads what it needs.
+
+
+@click.group(cls=ToolGroup)
+def action() -> None:
+    """Look at actions, and send goals."""
+
+
+@action.command("list", epilog="Example: ifgen action list -t")
+@options.graph_options
+@click.option("-t", "--show-types", is_flag=True, help="The types as well.")
+@click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Only how many there are.")
+@options.json_option
+def list_(**chosen: Any) -> None:
+    """Print the names of all actions."""
+    from ifgen_tools.action import graph
+
+    graph.list_actions(**chosen)
+
+
+@action.command("type", epilog="Example: ifgen action type /walk")
+@click.argument("name", metavar="ACTION", shell_complete=completion.actions)
+@options.graph_options
+@options.json_option
+def type_(**chosen: Any) -> None:
+    """Print the type of an action."""
+    from ifgen_tools.action import graph
+
+    graph.print_type(**chosen)
+
+
+@action.command(epilog="Example: ifgen action find example_interfaces/action/Fibonacci")
+@click.argument("type_name", metavar="TYPE", shell_complete=completion.action_types)
+@options.graph_options
+@click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Only how many there are.")
+@options.json_option
+def find(**chosen: Any) -> None:
+    """Print the actions of a type."""
+    from ifgen_tools.action import graph
+
+    graph.find_actions(**chosen)
+
+
+@action.command(epilog="Example: ifgen action info /walk -t")
+@click.argument("name", metavar="ACTION", shell_complete=completion.actions)
+@options.graph_options
+@click.option("-t", "--show-types", is_flag=True, help="The types as well.")
+@click.option("-c", "--count", is_flag=True, help="Only how many clients and servers there are.")
+@options.json_option
+def info(**chosen: Any) -> None:
+    """Print the nodes that serve an action, and those that send goals to it."""
+    from ifgen_tools.action import graph
+
+    graph.action_info(**chosen)
+
+
+@action.command(
+    "send_goal",
+    epilog="Example: ifgen action send_goal /count example_interfaces/action/Fibonacci '{order: 3}' -f",
+)
+@click.argument("name", metavar="ACTION", shell_complete=completion.actions)
+@click.argument("type_name", metavar="TYPE", shell_complete=completion.action_types)
+@click.argument("values", metavar="[GOAL]", required=False)
+@click.option("--stdin", "from_stdin", is_flag=True, help="Read the goal from stdin.")
+@click.option("-f", "--feedback", is_flag=True, help="Print feedback as well.")
+@options.transport_option
+@options.json_option
+def send_goal(**chosen: Any) -> None:
+    """Send a goal to an action, and print the result. Ctrl-C cancels the goal.
+
+    GOAL is YAML. Fields that are not in it keep their default values; `auto` for a header and `now` for a
+    time stand for the time of sending. TYPE need not be installed if the server describes it.
+    """
+    from ifgen_tools.action.goal import send_goal
+
+    send_goal(**chosen)

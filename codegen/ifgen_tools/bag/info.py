@@ -1,0 +1,126 @@
+"""`ifgen bag info`: what is in a bag."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from ifgen_tools.bag.reading import reading
+from ifgen_tools.bag.selection import SERVICE_EVENTS, is_service_event
+
+if TYPE_CHECKING:
+    from ifgen_runtime.bag import Bag
+    from ifgen_runtime.bag.topics import Topic
+
+_INDENT: Final = 19
+_UNITS: Final = ("B", "KiB", "MiB", "GiB", "TiB")
+_S: Final = 10**9
+
+
+def info(path: Path, *, topic_name: bool, verbose: bool, as_json: bool) -> int:
+    """Print what is in a bag, as `ros2 bag info` does."""
+    with reading(path) as bag:
+        topics = [topic for topic in bag.topics.values() if not is_service_event(topic.name)]
+        services = [topic for topic in bag.topics.values() if is_service_event(topic.name)]
+        if as_json:
+            print(json.dumps(_document(bag), indent=2))
+        elif topic_name:
+            for topic in topics:
+                print(topic.name)
+        else:
+            print(_text(bag, topics, services, verbose))
+    return 0
+
+
+def _text(bag: Bag, topics: list[Topic], services: list[Topic], verbose: bool) -> str:
+    lines = [
+        ("Files:", _indented(file.name for file in bag.files)),
+        ("Bag size:", file_size(sum(file.stat().st_size for file in bag.files))),
+        ("Storage id:", storage(bag.files)),
+        ("ROS Distro:", bag.ros_distro or "unknown"),
+        ("Duration:", f"{_seconds((bag.end or 0) - (bag.start or 0))}s"),
+        ("Start:", _time(bag.start or 0)),
+        ("End:", _time(bag.end or 0)),
+        ("Messages:", str(sum(topic.count for topic in topics))),
+        ("Topic information:", _indented(_topic(topic, verbose) for topic in topics)),
+        ("Service:", str(len(services))),
+        ("Service information:", _indented(_service(topic) for topic in services)),
+    ]
+    return "\n" + "\n".join(
+        (f"{name:<{_INDENT}}{value}" if len(name) < _INDENT else f"{name} {value}").rstrip()
+        for name, value in lines
+    )
+
+
+def _indented(lines: Any) -> str:
+    return f"\n{' ' * _INDENT}".join(lines)
+
+
+def _topic(topic: Topic, verbose: bool) -> str:
+    text = (
+        f"Topic: {topic.name} | Type: {topic.type_name} | Count: {topic.count} | "
+        f"Serialization Format: {topic.encoding}"
+    )
+    if not verbose:
+        return text
+    hashes = ", ".join(definition.type_hash or "unknown" for definition in topic.definitions)
+    return f"{text} | Type Hash: {hashes}"
+
+
+def _service(topic: Topic) -> str:
+    type_name = topic.type_name.removesuffix("_Event")
+    return (
+        f"Service: {topic.name.removesuffix(SERVICE_EVENTS)} | Type: {type_name} | "
+        f"Event Count: {topic.count} | Serialization Format: {topic.encoding}"
+    )
+
+
+def storage(files: list[Path] | tuple[Path, ...]) -> str:
+    """The name that rosbag2 has for the format of files."""
+    return "sqlite3" if any(".db3" in file.suffixes for file in files) else "mcap"
+
+
+def file_size(size: float) -> str:
+    """A number of bytes as people read it: `9.6 KiB`."""
+    unit = 0
+    while size >= 1024 and unit < len(_UNITS) - 1:
+        size, unit = size / 1024, unit + 1
+    return f"{size:.{min(unit, 1)}f} {_UNITS[unit]}"
+
+
+def _seconds(nanoseconds: int) -> str:
+    return f"{nanoseconds // _S}.{nanoseconds % _S:09}"
+
+
+def _time(nanoseconds: int) -> str:
+    local = time.localtime(nanoseconds // _S)
+    date = time.strftime("%b %e %Y %H:%M:%S", local)
+    return f"{date}.{nanoseconds % _S:09} ({_seconds(nanoseconds)})"
+
+
+def _document(bag: Bag) -> dict[str, Any]:
+    return {
+        "path": str(bag.path),
+        "files": [file.name for file in bag.files],
+        "size": sum(file.stat().st_size for file in bag.files),
+        "storage": storage(bag.files),
+        "start": bag.start,
+        "end": bag.end,
+        "messages": len(bag),
+        "topics": [_topic_document(topic) for topic in bag.topics.values()],
+        "damage": [str(damage) for damage in bag.damage],
+    }
+
+
+def _topic_document(topic: Topic) -> dict[str, Any]:
+    return {
+        "name": topic.name,
+        "type": topic.type_name,
+        "hashes": [definition.type_hash or None for definition in topic.definitions],
+        "has_definition": all(definition.text for definition in topic.definitions),
+        "count": topic.count,
+        "encoding": topic.encoding,
+        "qos": [{name: getattr(profile, name) for name in profile.__slots__} for profile in topic.qos],
+    }

@@ -1,0 +1,245 @@
+"""`ifgen bag play`: publishes the messages of a bag as they were recorded."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from ifgen_tools.bag.keys import DOWN, RIGHT, SPACE, UP, keyboard
+from ifgen_tools.bag.pacing import PlayClock
+from ifgen_tools.bag.playing import Player, Range, part
+from ifgen_tools.bag.reading import reading
+from ifgen_tools.bag.requests import Requester, requester, wait_for_answers, wait_for_servers
+from ifgen_tools.bag.selection import Selection, is_service_event
+from ifgen_tools.errors import ToolError
+from ifgen_tools.session import Session, open_session
+
+if TYPE_CHECKING:
+    from ifgen_runtime.bag import Bag
+    from ifgen_runtime.bag.topics import Channel, Definition
+    from rclpy.publisher import Publisher
+
+# Late imports: those of rclpy, once the transport has been chosen.
+
+_S = 10**9
+_FASTER = 1.1
+"""What a key changes the rate by."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlayOptions:
+    """What to play, and how; times are [s]."""
+
+    choice: Selection = field(default_factory=lambda: Selection(all_topics=True))
+    rate: float = 1.0
+    is_looping: bool = False
+    start_offset: float = 0.0
+    duration: float | None = None
+    until: int | None = None
+    """The time of the recording [ns] at which to end."""
+    delay: float = 0.0
+    is_paused: bool = False
+    clock_rate: float = 0.0
+    """How often to publish /clock [Hz]; 0 is never."""
+    clock_topics: frozenset[str] | None = None
+    """Topics before whose messages /clock is published; None for all of them."""
+    remaps: tuple[str, ...] = ()
+    qos_overrides: Path | None = None
+    has_keys: bool = True
+    request_events: int | None = None
+    """The kind of service events whose requests are sent; None publishes the events."""
+    all_acked: float = 0.0
+    """How long to wait at the end until everybody has everything; negative for ever, 0 not at all."""
+    node_name: str = "rosbag2_player"
+
+
+def play(path: Path, transport: Literal["local", "rclpy", "auto"], options: PlayOptions) -> int:
+    """Play a bag until its end."""
+    arguments = ["--ros-args", *(part for rule in options.remaps for part in ("--remap", rule))]
+    with reading(path) as bag:
+        if bag.start is None or bag.end is None:
+            raise ToolError(f"{path} has no messages", help="`ifgen bag info` shows what is in it")
+        span = _span(bag.start, bag.end, options)
+        with open_session(transport, arguments if options.remaps else (), options.node_name) as session:
+            _Playing(bag, session, options, span).run()
+    return 0
+
+
+@dataclass(frozen=True, slots=True)
+class Due:
+    """A message on its way out."""
+
+    received: int
+    topic: str
+    data: bytes
+    publish: Callable[[bytes], None]
+
+
+class _Playing:
+    """A bag that is played by the node of a session."""
+
+    def __init__(self, bag: Bag, session: Session, options: PlayOptions, span: Range) -> None:
+        from ifgen_tools.bag.player_services import offer_services
+        from ifgen_tools.bag.qos import overrides
+        from rclpy.clock import Clock, ClockType
+
+        self._bag, self._session, self._options = bag, session, options
+        self._overrides = overrides(options.qos_overrides)
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        clock = PlayClock(
+            lambda: steady.now().nanoseconds, span.start, options.rate, is_paused=options.is_paused
+        )
+        self._player = Player(self._messages, self._publish, self._wait, clock, span, delay=options.delay)
+        self._publishers: dict[tuple[str, Definition], Callable[[bytes], None]] = {}
+        self._all: list[Publisher[Any]] = []
+        self._requesters: list[Requester] = []
+        self._topics = [
+            topic for topic in bag.topics.values() if self._is_chosen(topic.name, topic.type_name)
+        ]
+        self._clock_publisher = self._clock() if options.clock_rate or self._before is not None else None
+        if options.request_events is not None:
+            session.discover()
+        for channel in bag.channels:
+            if any(channel.topic == topic.name for topic in self._topics):
+                self._open(channel)
+        if not self._publishers:
+            raise ToolError(f"nothing of {bag.path} is played", help="`ifgen bag info` shows its topics")
+        offer_services(session.node, self._player)
+
+    @property
+    def _before(self) -> frozenset[str] | None:
+        """The topics before whose messages /clock is published; None for no topic."""
+        chosen = self._options.clock_topics
+        if chosen is None:
+            return None
+        return chosen or frozenset(topic.name for topic in self._topics)
+
+    def run(self) -> None:
+        """Play it."""
+        player = self._player
+        if self._requesters:
+            wait_for_servers(self._session, self._requesters)
+        actions: dict[str, tuple[str, Callable[[], object]]] = {
+            SPACE: ("pause or resume", self._toggle),
+            RIGHT: ("next message", self._step),
+            UP: ("10 % faster", lambda: self._change_rate(_FASTER)),
+            DOWN: ("10 % slower", lambda: self._change_rate(1 / _FASTER)),
+        }
+        with keyboard(actions, is_wanted=self._options.has_keys) as self._keyboard:
+            if self._keyboard.legend:
+                print(self._keyboard.legend, file=sys.stderr)
+            player.play(is_looping=self._options.is_looping)
+        wait_for_answers(self._session, self._requesters)
+        self._wait_for_acknowledgements()
+
+    def _toggle(self) -> None:
+        self._player.toggle()
+        at = (self._player.clock.now() - (self._bag.start or 0)) / _S
+        _say(f"paused at {at:.3f} s" if self._player.clock.is_paused else "playing")
+
+    def _step(self) -> None:
+        if not self._player.clock.is_paused:
+            _say("SPACE pauses: after that, the right arrow publishes the next message")
+        self._player.step(1)
+
+    def _change_rate(self, factor: float) -> None:
+        self._player.set_rate(self._player.clock.rate * factor)
+        _say(f"rate {self._player.clock.rate:.2f}")
+
+    def _is_chosen(self, topic: str, type_name: str) -> bool:
+        if topic == "/clock" and (self._options.clock_rate or self._options.clock_topics is not None):
+            return False  # two clocks would contradict each other
+        return self._options.choice.takes(topic, type_name)
+
+    def _open(self, channel: Channel) -> None:
+        from ifgen_runtime.bag import BagError
+        from ifgen_tools.bag.qos import adapted_offer
+
+        topic = channel.topic
+        if (topic, channel.definition) in self._publishers:
+            return  # from another file
+        offer, disagree = adapted_offer(self._bag.topics[topic].qos)
+        if disagree and topic not in self._overrides:
+            print(f"warning: publishers of {topic} had different QoS: the default is used", file=sys.stderr)
+        try:
+            cls = self._bag.class_for(channel)
+        except BagError as error:
+            print(f"warning: {topic} is not played: {error}", file=sys.stderr)
+            return
+        if self._options.request_events is not None and is_service_event(topic):
+            caller = requester(self._session, topic, cls, self._options.request_events)
+            if caller is not None:
+                self._requesters.append(caller)
+                self._publishers[topic, channel.definition] = caller.send
+            return
+        publisher = self._session.node.create_publisher(cls, topic, self._overrides.get(topic, offer))
+        self._all.append(publisher)
+        self._publishers[topic, channel.definition] = publisher.publish
+
+    def _clock(self) -> Publisher[Any]:
+        from rclpy.qos import QoSProfile
+        from rosgraph_msgs.msg import Clock
+
+        node = self._session.node
+        publisher = node.create_publisher(Clock, "/clock", QoSProfile(depth=1))
+        if self._options.clock_rate:
+            from rclpy.clock import Clock as RosClock
+            from rclpy.clock import ClockType
+
+            steady = RosClock(clock_type=ClockType.STEADY_TIME)
+            node.create_timer(1 / self._options.clock_rate, self._tell_time, clock=steady)
+        return publisher
+
+    def _tell_time(self, now: int | None = None) -> None:
+        from rosgraph_msgs.msg import Clock
+
+        assert self._clock_publisher is not None
+        message = Clock()
+        message.clock.sec, message.clock.nanosec = divmod(
+            self._player.clock.now() if now is None else now, _S
+        )
+        self._clock_publisher.publish(message)
+
+    def _messages(self, start: int) -> Iterator[Due]:
+        names = [topic.name for topic in self._topics]
+        for received, _, channel, data in self._bag.entries(*names, start=start):
+            publish = self._publishers.get((channel.topic, channel.definition))
+            if publish is not None:
+                yield Due(received, channel.topic, data, publish)
+
+    def _publish(self, due: Due) -> None:
+        if (before := self._before) is not None and due.topic in before:
+            self._tell_time(due.received)
+        due.publish(due.data)
+
+    def _wait(self, seconds: float) -> None:
+        self._session.executor.spin_once(timeout_sec=seconds)
+        self._keyboard.look()
+
+    def _wait_for_acknowledgements(self) -> None:
+        from rclpy.duration import Duration
+
+        timeout = self._options.all_acked
+        if timeout:
+            limit = Duration(nanoseconds=-1) if timeout < 0 else Duration(seconds=timeout)
+            for publisher in self._all:
+                publisher.wait_for_all_acked(limit)
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)
+
+
+def _span(start: int, end: int, options: PlayOptions) -> Range:
+    first = start + round(options.start_offset * _S)
+    if first > end:
+        length = (end - start) / _S
+        raise ToolError(
+            f"--start-offset {options.start_offset:g} is after the end: the bag is {length:.3f} s long",
+            help="name an offset from its start in seconds",
+        )
+    duration = None if options.duration is None else round(options.duration * _S)
+    return part(first, end, duration, options.until)

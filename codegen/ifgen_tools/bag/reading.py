@@ -1,0 +1,42 @@
+"""Bags as commands open them: mistakes and damage are told to the user in a sentence."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Generator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ifgen_tools.errors import ToolError
+
+if TYPE_CHECKING:
+    from ifgen_runtime.bag import Bag
+
+
+@contextmanager
+def reading(path: Path, *, strict: bool = False) -> Generator[Bag]:
+    """An open bag. Raises ToolError for what is wrong with it; damage that it can pass over is a warning."""
+    from ifgen_runtime.bag import Bag, BagError, BagWarning  # most verbs of the command line read no bag
+
+    def show(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
+        if issubclass(category, BagWarning):
+            print(f"warning: {message}", file=sys.stderr)
+        else:
+            usual(message, category, *_, **__)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", BagWarning)
+        usual, warnings.showwarning = warnings.showwarning, show
+        try:
+            with Bag(path, strict=strict) as bag:
+                yield bag
+        except BagError as error:
+            raise ToolError(str(error), help=_help(path)) from None
+
+
+def _help(path: Path) -> str:
+    if not path.exists():
+        return "name a .mcap or .db3 file, or a folder that `bag record` made"
+    return ""

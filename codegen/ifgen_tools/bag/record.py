@@ -1,0 +1,191 @@
+"""`ifgen bag record`: writes what is published into a bag."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from ifgen_tools.bag.keys import SPACE, keyboard, stoppable
+from ifgen_tools.bag.selection import Selection
+from ifgen_tools.bag.storage.output import require_new, telling
+from ifgen_tools.bag.storage.writer import SUFFIXES, BagWriter, Format, Limits
+from ifgen_tools.errors import ToolError
+from ifgen_tools.session import Session, open_session
+
+if TYPE_CHECKING:
+    from ifgen_runtime.bag.topics import Channel
+    from ifgen_tools.bag.recording import Write
+    from rclpy.qos import QoSProfile
+
+# Late imports: those of rclpy, once the transport has been chosen.
+
+_LOOK: Final = 0.1
+"""Seconds between two looks at the keys."""
+
+_LAST: Final = 5.0
+"""Seconds at most for what is on its way when somebody ends a recording."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordCommand:
+    """What to record, and where to."""
+
+    choice: Selection
+    output: Path | None = None
+    format: Format = field(default_factory=Format)
+    limits: Limits = field(default_factory=Limits)
+    qos_overrides: Path | None = None
+    include_unpublished: bool = False
+    ignore_leaves: bool = False
+    has_discovery: bool = True
+    interval: float = 0.1
+    """Seconds between two looks at the graph."""
+    use_sim_time: bool = False
+    is_paused: bool = False
+    snapshot_size: int = 0
+    """Bytes of messages that are kept until somebody asks for a snapshot; 0 records at once."""
+    custom_data: Mapping[str, str] = field(default_factory=dict[str, str])
+    has_keys: bool = True
+    node_name: str = "rosbag2_recorder"
+
+
+def record(
+    transport: Literal["local", "rclpy", "auto"],
+    command: RecordCommand,
+    is_done: Callable[[Recording], bool] = lambda _: False,
+) -> int:
+    """Record until somebody interrupts it, or until `is_done`; the bag is complete then."""
+    output = command.output or Path(datetime.now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
+    is_folder = output.suffix not in SUFFIXES.values()
+    limits = command.limits
+    if not is_folder and (limits.size or limits.duration or command.format.outer):
+        raise ToolError(
+            f"{output} is a single file, and cannot be split or compressed as a whole",
+            help=f"name a folder with -o, such as {output.stem}",
+        )
+    require_new(output)
+    session = open_session(transport, (), command.node_name, use_sim_time=command.use_sim_time)
+    with session as opened, telling(output):
+        Recording(opened, command, output, is_folder).run(is_done)
+    return 0
+
+
+def say(text: str) -> None:
+    """Tell the user, beside what others may read from the output."""
+    print(text, file=sys.stderr, flush=True)
+
+
+class Recording:
+    """A bag that is recorded by the node of a session."""
+
+    def __init__(self, session: Session, command: RecordCommand, output: Path, is_folder: bool) -> None:
+        from ifgen_tools.bag.qos import overrides
+        from ifgen_tools.bag.recorder_services import offer_services
+        from ifgen_tools.bag.recording import RecordOptions, TopicRecorder
+
+        self._session, self._command, self._output = session, command, output
+        options = RecordOptions(
+            command.choice,
+            overrides(command.qos_overrides),
+            command.include_unpublished,
+            command.ignore_leaves,
+            command.use_sim_time,
+        )
+        self.topics = TopicRecorder(session.node, options, self._open, say)
+        self.topics.is_paused = command.is_paused
+        self.writer = BagWriter(
+            output, command.format, is_folder, command.limits, command.custom_data, on_split=_tell_split
+        )
+        self._kept: deque[tuple[Channel, int, int, bytes]] = deque()
+        self._kept_size = 0
+        offer_services(session.node, self)
+
+    def run(self, is_done: Callable[[Recording], bool]) -> None:
+        """Record, and complete the bag whatever ends it."""
+        command = self._command
+        with (
+            stoppable() as stop,
+            keyboard({SPACE: ("pause or resume", self.toggle)}, is_wanted=command.has_keys) as keys,
+        ):
+            try:
+                legend = f" ({keys.legend})" if keys.legend else ""
+                say(f"Recording to {self._output}. Press Ctrl-C to stop{legend}")
+                self._session.discover()
+                self.topics.look()
+                if command.has_discovery:
+                    self._look_again(self._session.node, command.interval)
+                while self._session.context.ok() and not stop.number and not is_done(self):
+                    self._session.executor.spin_once(timeout_sec=_LOOK)
+                    keys.look()
+                if stop.number:
+                    self._take_what_came()
+            finally:
+                self.topics.close()
+                self.writer.close()
+                self._summarise()
+        stop.raise_again()
+
+    def _take_what_came(self) -> None:
+        """Record what has been published already, and is on its way."""
+        until = time.monotonic() + _LAST
+        while time.monotonic() < until:
+            before = self.topics.taken
+            self._session.executor.spin_once(timeout_sec=_LOOK)
+            if self.topics.taken == before:
+                break
+
+    def _look_again(self, node: Any, interval: float) -> None:
+        from rclpy.clock import Clock, ClockType
+
+        node.create_timer(interval, self.topics.look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def toggle(self) -> None:
+        """Pause, or go on."""
+        self.topics.is_paused = not self.topics.is_paused
+        say("Recording paused" if self.topics.is_paused else "Recording resumed")
+
+    def snapshot(self) -> bool:
+        """Write what has been kept; returns whether there was anything."""
+        kept, self._kept, self._kept_size = self._kept, deque(), 0
+        for message in kept:
+            self.writer.write(*message)
+        return bool(kept)
+
+    def _open(self, topic: str, cls: type[Any], offers: list[QoSProfile]) -> Write:
+        from ifgen_runtime.bag.qos import offered
+        from ifgen_tools.bag.definitions import channel_of
+
+        channel = channel_of(topic, cls, tuple(dict.fromkeys(map(offered, offers))))
+        self.writer.add(channel)
+        write: Callable[[Channel, int, int, bytes], None] = self.writer.write
+        if self._command.snapshot_size:
+            write = self._keep
+
+        def writes(data: bytes, received: int, published: int) -> None:
+            write(channel, received, published, data)
+
+        return writes
+
+    def _keep(self, channel: Channel, received: int, published: int, data: bytes) -> None:
+        """Keep a message for a snapshot, and forget the oldest ones."""
+        self._kept.append((channel, received, published, data))
+        self._kept_size += len(data)
+        while self._kept_size > self._command.snapshot_size:
+            self._kept_size -= len(self._kept.popleft()[3])
+
+    def _summarise(self) -> None:
+        count = self.writer.count
+        say(f"Recorded {count:,} message{'s' * (count != 1)} to {self._output}")
+        for topic, lost in self.topics.lost.items():
+            what = "1 message" if lost == 1 else f"{lost:,} messages"
+            say(f"warning: on the way here, {what} of {topic} {'was' if lost == 1 else 'were'} lost")
+
+
+def _tell_split(closed: Path, opened: Path) -> None:
+    say(f"{closed.name} is full, going on in {opened.name}")

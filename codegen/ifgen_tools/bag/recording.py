@@ -1,0 +1,215 @@
+"""Subscribes to topics when they appear, and hands on what comes, as bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from ifgen_tools.bag.qos import adapted_request
+from ifgen_tools.bag.selection import Selection
+from ifgen_tools.errors import ToolError
+from ifgen_tools.types import WireType, class_with_hash
+from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.qos import QoSProfile
+    from rclpy.subscription import Subscription
+
+_DEPTH: Final = 100_000
+"""Messages of a topic that may wait while others are taken: a burst must not be lost."""
+
+_AT_ONCE: Final = 200
+"""Messages of a topic that are taken before others get their turn."""
+
+_AGAIN: Final = 50
+"""Looks at the graph after which somebody who did not describe a type is asked again."""
+
+Write: TypeAlias = Callable[[bytes, int, int], None]
+"""Takes a message: its bytes, when it was received and when it was published [ns]."""
+
+Open: TypeAlias = "Callable[[str, type[Any], list[QoSProfile]], Write]"
+"""Begins a topic, of messages of a class, with the QoS that its publishers offer."""
+
+
+@dataclass(frozen=True, slots=True)
+class RecordOptions:
+    """What to record, and how."""
+
+    choice: Selection
+    overrides: dict[str, QoSProfile] = field(default_factory=dict)
+    include_unpublished: bool = False
+    ignore_leaves: bool = False
+    use_sim_time: bool = False
+
+
+class TopicRecorder:
+    """Records what is chosen, each definition of a topic's type for itself."""
+
+    def __init__(self, node: Node, options: RecordOptions, open: Open, say: Callable[[str], None]) -> None:
+        """Subscribe with a node; `say` tells the user what happens."""
+        self.is_paused = False
+        self.taken = 0
+        """Messages that came, recorded or not."""
+        self._node, self._options, self._open, self._say = node, options, open, say
+        self._subscribed: dict[tuple[str, WireType], Subscription[Any]] = {}
+        self._asked: dict[tuple[str, WireType], Future[type[Any]]] = {}
+        self._refused: dict[tuple[str, WireType], int] = {}
+        self._lost: dict[str, int] = {}
+        self._warned: set[str] = set()
+        self._asking = ThreadPoolExecutor(1, "describe")
+        # Messages of another definition would not be what the bag says that they are.
+        node.on_type_mismatch = "refuse"  # type: ignore[attr-defined]  # pyright: ignore
+
+    @property
+    def topics(self) -> list[str]:
+        """The topics that are recorded."""
+        return sorted({topic for topic, _ in self._subscribed})
+
+    @property
+    def lost(self) -> dict[str, int]:
+        """How many messages of which topic were lost on the way here."""
+        return dict(self._lost)
+
+    def look(self) -> None:
+        """Subscribe to what has appeared since the last look."""
+        for topic, _ in self._node.get_topic_names_and_types():
+            for wire in self._wanted(topic):
+                key = topic, wire
+                if key not in self._subscribed and self._may_ask(key):
+                    self._take(key)
+
+    def close(self) -> None:
+        """Stop to record."""
+        self._asking.shutdown(wait=False, cancel_futures=True)
+        for subscription in self._subscribed.values():
+            self._node.destroy_subscription(subscription)
+
+    def _wanted(self, topic: str) -> list[WireType]:
+        """The types of a topic to record, as its publishers have them."""
+        node, options = self._node, self._options
+        infos = node.get_publishers_info_by_topic(topic)
+        own = node.get_name()
+        others = [info for info in node.get_subscriptions_info_by_topic(topic) if info.node_name != own]
+        if options.ignore_leaves and not others:
+            return []
+        if not infos and options.include_unpublished:
+            infos = others
+        types = {
+            WireType(
+                info.topic_type, text if (text := str(info.topic_type_hash)).startswith("RIHS01_") else None
+            )
+            for info in infos
+            if options.choice.takes(topic, info.topic_type)
+        }
+        return sorted(types, key=lambda wire: (wire.name, wire.hash or ""))
+
+    def _may_ask(self, key: tuple[str, WireType]) -> bool:
+        left = self._refused.get(key, 0)
+        self._refused[key] = max(left - 1, 0)
+        return left == 0
+
+    def _take(self, key: tuple[str, WireType]) -> None:
+        topic, wire = key
+        cls = _installed(wire)
+        if cls is None:
+            asked = self._asked.get(key)
+            if asked is None:
+                self._asked[key] = self._asking.submit(class_with_hash, self._node, topic, wire)
+            if asked is None or not asked.done():
+                return
+            del self._asked[key]
+            try:
+                cls = asked.result()
+            except ToolError as error:
+                self._refused[key] = _AGAIN
+                self._warn(f"{topic} is not recorded: {error.message}")
+                return
+        self._subscribe(key, cls)
+
+    def _subscribe(self, key: tuple[str, WireType], cls: type[Any]) -> None:
+        topic, wire = key
+        offers = [
+            info.qos_profile
+            for info in self._node.get_publishers_info_by_topic(topic)
+            if info.topic_type == wire.name
+        ]
+        profile = self._profile(topic, offers)
+        write = self._open(topic, cls, offers)
+        clock, use_sim_time = self._node.get_clock(), self._options.use_sim_time
+
+        def record(data: bytes, info: Any) -> None:
+            if self.is_paused:
+                return
+            received = clock.now().nanoseconds if use_sim_time else info["received_timestamp"]
+            if received:  # there is no simulated time before the first /clock
+                write(data, received, info["source_timestamp"] or received)
+
+        def record_all(data: bytes, info: Any) -> None:
+            """Take what waits besides, without a turn of the executor for each: half the time."""
+            record(data, info)
+            taken = 1
+            while taken < _AT_ONCE and (more := _take(subscription)) is not None:
+                record(*more)
+                taken += 1
+            self.taken += taken
+
+        subscription = self._subscription(topic, cls, record_all, profile)
+        self._subscribed[key] = subscription
+        self._say(f"Subscribed to topic '{topic}'")
+
+    def _subscription(
+        self, topic: str, cls: type[Any], record: Callable[[bytes, Any], None], profile: QoSProfile
+    ) -> Subscription[Any]:
+        def count(status: Any) -> None:
+            self._lost[topic] = self._lost.get(topic, 0) + status.total_count_change
+
+        events = SubscriptionEventCallbacks(message_lost=count)
+        try:
+            return self._node.create_subscription(
+                cls, topic, record, profile, raw=True, event_callbacks=events
+            )
+        except UnsupportedEventTypeError:  # this middleware does not say what is lost
+            return self._node.create_subscription(cls, topic, record, profile, raw=True)
+
+    def _profile(self, topic: str, offers: list[QoSProfile]) -> QoSProfile:
+        if (override := self._options.overrides.get(topic)) is not None:
+            return override
+        profile, mixed = adapted_request(offers, _DEPTH)
+        for policy in mixed:
+            self._warn(
+                f"some, but not all, publishers on {topic} offer more {policy}: the least of them is asked "
+                "for, so that all match" + _CONSEQUENCE[policy]
+            )
+        return profile
+
+    def _warn(self, text: str) -> None:
+        if text not in self._warned:
+            self._warned.add(text)
+            self._say(f"warning: {text}")
+
+
+_CONSEQUENCE: Final = {
+    "reliability": ", and messages may be lost",
+    "durability": ", and what was published before is not recorded",
+}
+
+
+def _take(subscription: Subscription[Any]) -> Any:
+    """The next message that waits, with its metadata; None if there is none."""
+    with subscription.handle:
+        return subscription.handle.take_message(subscription.msg_type, True)
+
+
+def _installed(wire: WireType) -> type[Any] | None:
+    """The class that is installed or generated, if it has this definition."""
+    package, folder, name = (*wire.name.split("/", 2), "", "")[:3]
+    try:
+        cls = getattr(import_module(f"{package}.{folder}"), name, None)
+    except (ImportError, ValueError):
+        return None
+    fits = cls is not None and wire.hash in {None, getattr(cls, "__type_hash__", wire.hash)}
+    return cls if fits else None

@@ -1,0 +1,1 @@
+"""Bags as they are written: files of both formats, folders with their metadata, all or nothing."""

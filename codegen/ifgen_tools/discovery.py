@@ -1,0 +1,38 @@
+"""What the local transport knows of other processes, which rclpy's public API does not tell.
+
+This is the one module of the tools that looks below rclpy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Final
+
+# Late imports: there is no rmw_local beside a real rclpy.
+
+_PATIENCE: Final = 2.0
+"""Seconds for which answers to a survey come."""
+
+
+def knows_everybody(domain: int) -> bool:
+    """Whether the graph of a ROS domain has everybody who was there before this process's first node."""
+    from rmw_local.domain import Domain
+
+    reach = Domain.numbered(domain).reach
+    return reach is None or reach.knows_everybody()
+
+
+def lacks_zenoh(domain: int) -> bool:
+    """Whether other processes are there, but not reached because Zenoh is not installed."""
+    from rmw_local.domain import Domain
+
+    reach = Domain.numbered(domain).reach
+    return reach is not None and reach.lacks_zenoh()
+
+
+def survey(domain: int) -> Callable[[], Iterable[bytes]]:
+    """Ask all processes in a ROS domain for their statistics; returns what returns the answers so far."""
+    from rmw_local.domain import Domain
+    from rmw_local.statistics import survey
+
+    return survey(Domain.numbered(domain), _PATIENCE)

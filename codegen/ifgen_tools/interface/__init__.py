@@ -1,0 +1,1 @@
+"""`ifgen interface`: the interfaces that can be found here. It needs no running system."""

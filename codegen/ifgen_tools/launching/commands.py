@@ -1,0 +1,183 @@
+"""The command `ifgen launch`."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from ifgen_tools import completion
+from ifgen_tools.errors import ToolError
+from ifgen_tools.options import transport_option
+
+if TYPE_CHECKING:
+    from ifgen_tools.launching.running.host import LaunchHost
+
+# Late imports: what a launch needs, and `launch` itself, which is found once the transport is chosen.
+
+_LIBRARIES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
+
+
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Example: ifgen launch bringup.launch.py rate:=10.0",
+)
+@transport_option
+@click.option(
+    "-s", "--show-args", "--show-arguments", is_flag=True, help="Print the arguments, and run nothing."
+)
+@click.option("-p", "--print", "--print-description", "prints", is_flag=True, help="Print what it contains.")
+@click.option("--one-process", is_flag=True, help="All nodes in one process (local transport).")
+@click.option(
+    "-a", "--show-all-subprocesses-output", "show_all", is_flag=True, help="All output on the screen."
+)
+@click.option(
+    "-n", "--noninteractive", is_flag=True, help="Accepted, as in ROS: nobody is ever asked anything."
+)
+@click.option(
+    "--launch-prefix", metavar="COMMAND", default="", help="Put this before the command of processes."
+)
+@click.option(
+    "--launch-prefix-filter", metavar="REGEX", default="", help="Only of executables that match this."
+)
+@click.argument(
+    "words",
+    metavar="FILE|PACKAGE FILE [NAME:=VALUE]...",
+    nargs=-1,
+    required=True,
+    shell_complete=completion.words_of_launch,
+)
+def launch(
+    transport: Literal["local", "rclpy", "auto"],
+    show_args: bool,
+    prints: bool,
+    one_process: bool,
+    show_all: bool,
+    noninteractive: bool,
+    launch_prefix: str,
+    launch_prefix_filter: str,
+    words: tuple[str, ...],
+) -> int:
+    """Start what a launch file describes, and end it all together.
+
+    FILE is a launch file of ROS 2 in Python, XML or YAML. With PACKAGE it is one of that package. Each node
+    runs in a process of its own. Ctrl-C ends them all.
+
+    The exit code is 0 if every process ended well or was asked to end, 1 for a mistake in the description,
+    else the highest exit code of a process that died by itself.
+    """
+    from ifgen.config.settings import settle
+
+    paths, given = _split(words)
+    output = settle().output
+    chosen = _activate(transport, output)
+    path = _path(paths, output)
+    from launch import LaunchContext
+    from launch.actions import IncludeLaunchDescription
+
+    from ifgen_tools.launching.errors import LaunchError, explained
+
+    context = LaunchContext(argv=given, noninteractive=noninteractive)
+    configurations = {"launch-prefix": launch_prefix, "launch-prefix-filter": launch_prefix_filter}
+    context.launch_configurations |= {name: value for name, value in configurations.items() if value}
+    if show_all:
+        os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
+    host = _host(context, output, chosen, one_process=one_process)
+    if show_args or prints:
+        return _describe(host, path, show_args=show_args)
+    arguments = [word.split(":=", 1) for word in given]
+    include = IncludeLaunchDescription(path, launch_arguments=[(name, value) for name, value in arguments])
+    include.place = None
+    try:
+        include.launch_description_source.get_launch_description(context)
+    except LaunchError:
+        raise
+    except Exception as error:
+        raise explained(error) from error
+    return host.run(include)
+
+
+def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
+    """The file, after its package if there is one, and the arguments for it."""
+    given = [word for word in words if ":=" in word]
+    paths = [word for word in words if ":=" not in word]
+    if len(paths) > 2 or not paths:
+        wrong = paths[2] if paths else words[0]
+        raise click.UsageError(f"unexpected '{wrong}': arguments are NAME:=VALUE, and FILE comes first")
+    for word in given:
+        if word.startswith(":="):
+            raise click.UsageError(f"the argument '{word}' has no name: arguments are NAME:=VALUE")
+    return paths, given
+
+
+def _activate(transport: Literal["local", "rclpy", "auto"], output: Path) -> str:
+    """Let launch files find the packages of a transport, and our launch before others; return which one."""
+    from ifgen import resources
+    from ifgen.running.activation import ActivationError, put_on_path
+
+    try:
+        chosen = put_on_path(transport, output)
+    except ActivationError as error:
+        raise ToolError(str(error)) from None
+    sys.path.insert(0, str(resources.libraries()))
+    for name in _LIBRARIES:
+        importlib.import_module(name)
+    sys.path.pop(0)
+    return chosen
+
+
+def _path(paths: list[str], output: Path) -> str:
+    """The launch file: as it is named, or in the folders of a package. Raises ToolError."""
+    if len(paths) == 1:
+        if not Path(paths[0]).is_file():
+            raise ToolError(
+                f"there is no launch file '{paths[0]}'", "for a file of a package, write its name first"
+            )
+        return paths[0]
+    from ifgen.diagnostics import UsageError
+    from ifgen.running.finding import packages
+
+    package, name = paths
+    found = packages.find(package, output)
+    if found is None:
+        raise UsageError([packages.missing(package, output)])
+    files = sorted(found.share.rglob("*launch*"))
+    matching = [file for file in files if file.name == name and file.is_file()]
+    if not matching:
+        known = ", ".join(file.name for file in files if file.is_file()) or "none"
+        raise ToolError(f"the package '{package}' in {found.share} has no file '{name}'", f"it has {known}")
+    if len(matching) > 1:
+        raise ToolError(f"the package '{package}' has '{name}' twice: {matching[0]} and {matching[1]}")
+    return str(matching[0])
+
+
+def _host(context: object, output: Path, transport: str, *, one_process: bool) -> LaunchHost:
+    from launch import LaunchContext
+
+    from ifgen_tools.launching.running.host import LaunchHost
+
+    assert isinstance(context, LaunchContext)
+    if not one_process:
+        return LaunchHost(context, output, transport)
+    if transport != "local":
+        raise ToolError("--one-process needs the local transport", "add `--transport local`")
+    from ifgen_tools.launching.running.together import TogetherHost
+
+    return TogetherHost(context, output, transport)
+
+
+def _describe(host: LaunchHost, path: str, *, show_args: bool) -> int:
+    from ifgen_tools.launching.describing import arguments, arguments_in_words, tree
+
+    try:
+        description = host.read(path)
+        lines = arguments_in_words(arguments(description, path, host)) if show_args else tree(description)
+        print("\n".join(lines))
+    finally:
+        host.close()
+    return 0

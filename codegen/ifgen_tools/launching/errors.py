@@ -1,0 +1,79 @@
+"""Errors in launch files: one line with the file, the line, and what is wrong."""
+
+from __future__ import annotations
+
+import traceback
+from pathlib import Path
+
+from ifgen import resources
+from ifgen.diagnostics import InputError, shown_path
+
+from ifgen_tools.errors import ToolError
+
+Place = tuple[str, int]
+"""A file, and a line counted from 1."""
+
+_OURS = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ifgen_tools")
+
+
+class LaunchError(ToolError):
+    """A mistake in a launch file; `place` is None where no file can be blamed."""
+
+    def __init__(self, message: str, place: Place | None = None, help: str = "") -> None:
+        where = f"{shown_path(Path(place[0]))}:{place[1]}: " if place else ""
+        super().__init__(f"{where}{message}", help)
+        self.place = place
+
+
+def explained(error: Exception, place: Place | None = None) -> LaunchError:
+    """Return an exception of a description as an error with its place.
+
+    The place is the last line of the user's in the traceback, else the given one: that of the entity.
+    """
+    if isinstance(error, LaunchError) and error.place is not None:
+        return error
+    if isinstance(error, ToolError):
+        return LaunchError(error.message, place, error.help)
+    if isinstance(error, InputError):
+        first = error.diagnostics[0]
+        return LaunchError(first.message, place, first.help or "")
+    if isinstance(error, SyntaxError):
+        place = (error.filename, error.lineno) if error.filename and error.lineno else place
+        return LaunchError(error.msg, place)
+    own = _last_of_user(error)
+    text = (str(error.args[0]) if isinstance(error, KeyError) and error.args else str(error)) or type(
+        error
+    ).__name__
+    if isinstance(error, ImportError | AttributeError) and (refused := _refused(error)):
+        return LaunchError(refused[0], own or place, refused[1])
+    known = isinstance(error, RuntimeError | TypeError | ValueError | ImportError | NotImplementedError)
+    return LaunchError(text if known else f"{type(error).__name__}: {text}", own or place)
+
+
+def _refused(error: ImportError | AttributeError) -> tuple[str, str] | None:
+    """The message and the advice about a name that our packages do not have."""
+    name = error.name or ""
+    text = str(error)
+    source = str(getattr(error.obj, "__name__", "")) if isinstance(error, AttributeError) else ""
+    if isinstance(error, ImportError) and not isinstance(error, ModuleNotFoundError):
+        source, _, name = (error.name or ""), None, text.partition("name '")[2].partition("'")[0]
+    top = (source or name).partition(".")[0]
+    if top not in _OURS:
+        return None
+    whole = f"{source}.{name}" if source else name
+    if "`ifgen launch FILE`" in text:
+        return text, ""
+    return f"`ifgen launch` has no {whole}", "docs/launch.md lists what it runs; a ROS has all of launch"
+
+
+def _last_of_user(error: BaseException) -> Place | None:
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        path = Path(frame.filename)
+        ours = any(part in _OURS for part in path.parts[-4:]) and (
+            "libraries" in path.parts or "ifgen_tools" in path.parts
+        )
+        standard = frame.filename.startswith("<") or Path(traceback.__file__).parent in path.parents
+        installed = "site-packages" in path.parts or resources.libraries() in path.parents
+        if not (ours or standard or installed) and frame.lineno:
+            return frame.filename, frame.lineno
+    return None

@@ -1,0 +1,1 @@
+"""Runs launch descriptions: their processes, timers and events."""

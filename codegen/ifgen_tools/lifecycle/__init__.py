@@ -1,0 +1,1 @@
+"""`ifgen lifecycle`: the states of lifecycle nodes, and how they change."""

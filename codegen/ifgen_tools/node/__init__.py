@@ -1,0 +1,1 @@
+"""`ifgen node`: the nodes of a running system, and what each of them has."""

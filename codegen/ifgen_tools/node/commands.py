@@ -1,0 +1,43 @@
+"""The verbs of `ifgen node`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import click
+
+from ifgen_tools import completion, options
+from ifgen_tools.group import ToolGroup
+
+# Late imports: each verb loads what it needs.
+
+
+@click.group(cls=ToolGroup)
+def node() -> None:
+    """Look at nodes."""
+
+
+@node.command("list", epilog="Example: ifgen node list")
+@options.graph_options
+@options.use_sim_time_option
+@click.option("-a", "--all", "include_hidden", is_flag=True, help="Hidden nodes as well.")
+@click.option("-c", "--count-nodes", "--count", "count", is_flag=True, help="Only how many there are.")
+@options.json_option
+def list_(**chosen: Any) -> None:
+    """Print the names of all nodes."""
+    from ifgen_tools.node.listing import list_nodes
+
+    list_nodes(**chosen)
+
+
+@node.command(epilog="Example: ifgen node info /talker")
+@click.argument("node_name", metavar="NODE", shell_complete=completion.nodes)
+@options.graph_options
+@options.use_sim_time_option
+@click.option("--include-hidden", is_flag=True, help="Hidden topics, services and actions as well.")
+@options.json_option
+def info(**chosen: Any) -> None:
+    """Print the topics, services and actions of a node."""
+    from ifgen_tools.node.info import node_info
+
+    node_info(**chosen)

@@ -1,0 +1,59 @@
+"""Nodes by their full names."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from ifgen_tools import discovery
+from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen_tools.names import full_name, is_hidden
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from rclpy.node import Node
+
+    from ifgen_tools.session import Session
+
+_PATIENCE: Final = 5.0
+"""Seconds that a named node may take to be discovered."""
+
+
+def hidden_nodes_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """`--include-hidden-nodes`, as `include_hidden`."""
+    return click.option(
+        "--include-hidden-nodes", "include_hidden", is_flag=True, help="Hidden nodes as well."
+    )(command)
+
+
+def node_names(node: Node, include_hidden: bool = False) -> list[str]:
+    """The full names of all nodes that a node sees but itself, sorted."""
+    own = node.get_fully_qualified_name()
+    names = (full_name(name, namespace) for name, namespace in node.get_node_names_and_namespaces())
+    return sorted(name for name in names if name != own and (include_hidden or not is_hidden(name)))
+
+
+def find_node(session: Session, name: str, spin_time: float | None = None) -> str:
+    """The full name of a node that the user named, once it is there.
+
+    A hidden one, too: who names it wants it. Raises ToolError if it is not there after `spin_time` [s].
+    """
+    wanted = name if name.startswith("/") else f"/{name}"
+    domain = session.context.get_domain_id()
+
+    def is_there() -> bool:
+        return wanted in node_names(session.node, True)
+
+    def is_known() -> bool:
+        return is_there() or (session.transport == "local" and discovery.knows_everybody(domain))
+
+    session.wait_for(is_known, _PATIENCE if spin_time is None else spin_time)
+    if is_there():
+        return wanted
+    known = node_names(session.node)
+    advice = did_you_mean(wanted, known) or (
+        "see `ifgen node list`" if known else "no node is running, or none that this process can see"
+    )
+    raise ToolError(f"there is no node {wanted!r}", advice)

@@ -1,0 +1,1 @@
+"""`ifgen param`: looks at parameters of running nodes, and sets them."""

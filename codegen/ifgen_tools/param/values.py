@@ -1,0 +1,204 @@
+"""`ifgen param get`, `set` and `delete`."""
+
+from __future__ import annotations
+
+import json
+import sys
+from array import array
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Final
+
+from ifgen_tools.errors import ToolError
+from ifgen_tools.nodes import find_node
+from ifgen_tools.param.remote import TYPES, RemoteParameters, SetResult
+from ifgen_tools.session import TransportChoice, open_session
+
+if TYPE_CHECKING:
+    from rcl_interfaces.msg import ParameterValue
+
+# Late imports: rclpy is found once the transport has been chosen.
+
+_FIELDS: Final = {
+    1: "bool_value",
+    2: "integer_value",
+    3: "double_value",
+    4: "string_value",
+    5: "byte_array_value",
+    6: "bool_array_value",
+    7: "integer_array_value",
+    8: "double_array_value",
+    9: "string_array_value",
+}
+
+
+def value_of(message: ParameterValue) -> Any:
+    """The value in a rcl_interfaces/msg/ParameterValue; None if it is not set. Bytes are a list of int."""
+    if message.type not in _FIELDS:
+        return None
+    value = getattr(message, _FIELDS[message.type])
+    if message.type == 5:
+        return [each[0] for each in value]
+    return list(value) if message.type > 5 else value
+
+
+def get_parameter(
+    *,
+    node: str,
+    name: str,
+    transport: TransportChoice = "auto",
+    spin_time: float | None = None,
+    include_hidden: bool = True,
+    hide_type: bool = False,
+    patience: float | None = None,
+    as_json: bool = False,
+    use_sim_time: bool = False,
+) -> int:
+    """Print a value, after the name of its type."""
+    with open_session(transport, use_sim_time=use_sim_time) as session:
+        remote = RemoteParameters(session, find_node(session, node, spin_time), patience)
+        found = remote.values([name])
+        if name not in found:
+            raise remote.missing(name)
+    message = found[name]
+    if as_json:
+        parts = {"node": remote.node, "name": name, "type": TYPES[message.type], "value": value_of(message)}
+        print(json.dumps(parts))
+    elif message.type not in _FIELDS:
+        print("None" if hide_type else "Parameter not set.")
+    else:
+        print(_text(message) if hide_type else f"{_label(message.type)} {_text(message)}")
+    return 0
+
+
+def set_parameters(
+    *,
+    node: str,
+    pairs: Sequence[tuple[str, str]],
+    transport: TransportChoice = "auto",
+    spin_time: float | None = None,
+    include_hidden: bool = True,
+    atomic: bool = False,
+    patience: float | None = None,
+    as_json: bool = False,
+    use_sim_time: bool = False,
+) -> int:
+    """Set parameters to values, which are YAML. Returns 1 if the node has refused one."""
+    with open_session(transport, use_sim_time=use_sim_time) as session:
+        from rcl_interfaces.msg import Parameter
+
+        remote = RemoteParameters(session, find_node(session, node, spin_time), patience)
+        parameters = [Parameter(name=name, value=_parsed(name, text)) for name, text in pairs]
+        results = remote.set_atomically(parameters) if atomic else remote.set(parameters)
+        advice = [] if all(each.successful for each in results) else _advice(remote, parameters, results)
+    if atomic and not as_json:
+        _print(results[0], "Set parameters atomically successful", "Setting parameters atomically failed")
+    elif not as_json:
+        for result in results:
+            prefix = f"{result.name}: " if len(results) > 1 else ""
+            _print(result, f"{prefix}Set parameter successful", f"{prefix}Setting parameter failed")
+    return finish(results, as_json, advice)
+
+
+def delete_parameter(
+    *,
+    node: str,
+    name: str,
+    transport: TransportChoice = "auto",
+    spin_time: float | None = None,
+    include_hidden: bool = True,
+    patience: float | None = None,
+    as_json: bool = False,
+    use_sim_time: bool = False,
+) -> int:
+    """Set a parameter to no value, which deletes it. Returns 1 if the node has refused that."""
+    with open_session(transport, use_sim_time=use_sim_time) as session:
+        from rcl_interfaces.msg import Parameter
+
+        remote = RemoteParameters(session, find_node(session, node, spin_time), patience)
+        if name not in remote.names():
+            raise remote.missing(name)
+        results = remote.set([Parameter(name=name)])
+    if not as_json:
+        _print(results[0], "Deleted parameter successfully", "Deleting parameter failed")
+    return finish(results, as_json)
+
+
+def finish(results: Sequence[SetResult], as_json: bool, advice: Sequence[str] = ()) -> int:
+    """Print results as JSON if that is wanted, and advice; returns the exit code."""
+    if as_json:
+        print(json.dumps([asdict(each) for each in results], indent=2))
+    for line in advice:
+        print(f"  = help: {line}", file=sys.stderr)
+    return 0 if all(each.successful for each in results) else 1
+
+
+def _print(result: SetResult, success: str, failure: str) -> None:
+    text = success if result.successful else failure
+    file = sys.stdout if result.successful else sys.stderr
+    print(f"{text}: {result.reason}" if result.reason else text, file=file)
+
+
+def _label(type_: int) -> str:
+    """What ROS writes before a value: `Integer value is:`, `Double values are:`."""
+    kind, *is_array = TYPES[type_].capitalize().split()
+    return f"{kind} values are:" if is_array else f"{kind} value is:"
+
+
+def _text(message: ParameterValue) -> str:
+    """A value as `ros2 param get` prints it, which is as Python does."""
+    value: Any = getattr(message, _FIELDS[message.type])
+    # Our messages have arrays where those of rosidl have arrays, and both print these alike.
+    return str(value if isinstance(value, array) else list(value) if message.type > 4 else value)
+
+
+def _parsed(name: str, text: str) -> ParameterValue:
+    import yaml
+    from rclpy.parameter import get_parameter_value
+
+    try:
+        value = get_parameter_value(text)
+    except (yaml.YAMLError, RecursionError) as error:
+        raise ToolError(f"the value of {name!r} is no YAML: {' '.join(str(error).split())}") from None
+    except (AssertionError, OverflowError, TypeError, ValueError) as error:
+        raise ToolError(f"the value {text!r} of {name!r} fits no parameter: {error}") from None
+    check_integers(name, value)
+    return value
+
+
+def check_integers(name: str, message: ParameterValue) -> None:
+    """Raise ToolError for integers that no parameter can hold."""
+    for number in (message.integer_value, *message.integer_array_value):
+        if not -(2**63) <= number < 2**63:
+            raise ToolError(f"the value {number} of {name!r} fits no parameter", "integers have 64 bits")
+
+
+def _advice(remote: RemoteParameters, parameters: Sequence[Any], results: Sequence[SetResult]) -> list[str]:
+    """What to write where a value has another type than its parameter."""
+    known = remote.names()
+    lines: list[str] = []
+    for parameter, result in zip(parameters, results, strict=True):
+        if result.successful:
+            continue
+        if parameter.name not in known:
+            lines.append(remote.near(parameter.name, known))
+            continue
+        type_ = remote.types([parameter.name]).get(parameter.name, 0)
+        if type_ not in {0, parameter.value.type}:
+            example = _EXAMPLES[type_]
+            lines.append(f"{parameter.name!r} has the type {TYPES[type_]}: write a value such as {example}")
+    return lines
+
+
+_EXAMPLES: Final = {
+    1: "true",
+    2: "1",
+    3: "1.0",
+    4: "\"'1'\"",
+    5: "one in a file, since no text stands for bytes",
+    6: "'[true, false]'",
+    7: "'[1, 2]'",
+    8: "'[1.0, 2.0]'",
+    9: "'[a, b]'",
+}
+"""A value of each type as it is written in a shell."""

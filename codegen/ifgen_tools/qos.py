@@ -1,0 +1,181 @@
+"""QoS on the command line: options, profiles of them, and what keeps a publisher and a subscription apart."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import click
+
+from ifgen_tools.names import full_name
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
+    from rclpy.qos import QoSProfile
+    from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+# Late imports: rclpy is found once the transport has been chosen.
+
+Command: TypeAlias = Callable[..., Any]
+
+_PRESETS: Final = (
+    *("unknown", "default", "system_default", "sensor_data", "services_default", "parameters"),
+    *("parameter_events", "action_status_default", "best_available"),
+)
+_POLICIES: Final = {
+    "history": ("system_default", "keep_last", "keep_all", "unknown"),
+    "reliability": ("system_default", "reliable", "best_effort", "unknown", "best_available"),
+    "durability": ("system_default", "transient_local", "volatile", "unknown", "best_available"),
+    "liveliness": ("system_default", "automatic", "manual_by_topic", "unknown", "best_available"),
+}
+
+
+def qos_options(command: Command) -> Command:
+    """All `--qos-...`, as `qos_profile` and so on; pop them with `chosen_qos`."""
+    lease = click.option(
+        "--qos-liveliness-lease-duration-seconds",
+        type=click.FloatRange(min=0),
+        metavar="N",
+        help="The lease duration of liveliness.",
+    )
+    command = lease(command)
+    for policy, values in reversed(_POLICIES.items()):
+        help = f"In place of the profile's: {', '.join(values)}."
+        command = click.option(f"--qos-{policy}", type=click.Choice(values), help=help, metavar="POLICY")(
+            command
+        )
+    depth = click.option(
+        "--qos-depth", type=click.IntRange(min=0), metavar="N", help="In place of the profile's."
+    )
+    profile = click.option(
+        "--qos-profile",
+        type=click.Choice(_PRESETS),
+        metavar="NAME",
+        help=f"A profile: {', '.join(_PRESETS)}.",
+    )
+    return profile(depth(command))
+
+
+def chosen_qos(options: dict[str, Any]) -> dict[str, Any]:
+    """Take what the user chose of QoS out of the options of a command; empty if nothing."""
+    names = [name for name in options if name.startswith("qos_")]
+    taken = {name.removeprefix("qos_"): options.pop(name) for name in names}
+    return {name: value for name, value in taken.items() if value is not None}
+
+
+def profile_of(chosen: dict[str, Any], default: str) -> QoSProfile:
+    """The profile that the user chose; what was not said is as in the preset of the name `default`."""
+    from rclpy import qos
+    from rclpy.duration import Duration
+
+    profile = qos.QoSPresetProfiles.get_from_short_key(chosen.get("profile", default))
+    kinds: dict[str, Any] = {
+        "history": qos.HistoryPolicy,
+        "reliability": qos.ReliabilityPolicy,
+        "durability": qos.DurabilityPolicy,
+        "liveliness": qos.LivelinessPolicy,
+    }
+    for policy, kind in kinds.items():
+        if policy in chosen:
+            setattr(profile, policy, kind.get_from_short_key(chosen[policy]))
+    if "liveliness_lease_duration_seconds" in chosen:
+        seconds: float = chosen["liveliness_lease_duration_seconds"]
+        profile.liveliness_lease_duration = Duration(nanoseconds=round(seconds * 1e9))
+    if "depth" in chosen:
+        profile.depth = chosen["depth"]
+    elif profile.durability == qos.DurabilityPolicy.TRANSIENT_LOCAL and profile.depth == 0:
+        profile.depth = 1
+    return profile
+
+
+def fitting(profile: QoSProfile, publishers: Sequence[TopicEndpointInfo]) -> list[str]:
+    """Let a profile fit all publishers: reliable, or transient local, only if all of them are.
+
+    Returns what has to be said about it.
+    """
+    from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
+
+    remarks: list[str] = []
+    policies: tuple[tuple[str, Any, Any, str], ...] = (
+        ("reliability", ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT, "QoSReliabilityPolicy"),
+        ("durability", DurabilityPolicy.TRANSIENT_LOCAL, DurabilityPolicy.VOLATILE, "QoSDurabilityPolicy"),
+    )
+    for policy, strong, weak, kind in policies:
+        offering = [getattr(info.qos_profile, policy) == strong for info in publishers]
+        if not offering:
+            continue
+        setattr(profile, policy, strong if all(offering) else weak)
+        if any(offering) and not all(offering):
+            remarks.append(
+                f"Some, but not all, publishers are offering {kind}.{strong.name}. Falling back to "
+                f"{kind}.{weak.name} as it will connect to all publishers"
+            )
+    return remarks
+
+
+def teller_of_obstacles(
+    node: Node, topic: str, profile: QoSProfile, *, publishes: bool
+) -> Callable[[Any], None]:
+    """A callback for the event that endpoints cannot match: says on stderr whose, and by which policy.
+
+    `publishes` says that ours is a publisher, and theirs are subscriptions.
+    """
+    told: set[str] = set()
+    look = node.get_subscriptions_info_by_topic if publishes else node.get_publishers_info_by_topic
+    direction = "go to" if publishes else "come from"
+
+    def tell(_: Any) -> None:
+        for obstacle in obstacles(profile, look(topic), publishes=publishes):
+            if obstacle not in told:
+                told.add(obstacle)
+                print(f"warning: no message will {direction} {obstacle}", file=sys.stderr, flush=True)
+
+    return tell
+
+
+def obstacles(profile: QoSProfile, others: Sequence[TopicEndpointInfo], *, publishes: bool) -> list[str]:
+    """Why endpoints of others cannot match ours of this profile, one sentence for each of them.
+
+    `publishes` says that ours is a publisher, and theirs are subscriptions.
+    """
+    from rclpy.qos import QoSCompatibility, qos_check_compatible
+
+    found: list[str] = []
+    for info in others:
+        offered, requested = (profile, info.qos_profile) if publishes else (info.qos_profile, profile)
+        compatibility, reason = qos_check_compatible(offered, requested)
+        if compatibility == QoSCompatibility.ERROR:
+            name = full_name(info.node_name, info.node_namespace)
+            found.append(f"{name}: {_advice(offered, requested) or reason}")
+    return found
+
+
+def _advice(offered: QoSProfile, requested: QoSProfile) -> str:
+    """What keeps them apart, by policy."""
+    parts: list[str] = []
+    for policy in ("reliability", "durability", "liveliness"):
+        ours, theirs = getattr(offered, policy), getattr(requested, policy)
+        if _is_weaker(policy, ours.name, theirs.name):
+            offer, request = f"{policy} {ours.short_key}", theirs.short_key
+            parts.append(f"the publisher offers {offer}, the subscription asks for {request}")
+    for policy in ("deadline", "liveliness_lease_duration"):
+        ours, theirs = getattr(offered, policy), getattr(requested, policy)
+        if 0 < theirs.nanoseconds < (ours.nanoseconds or _INFINITE):
+            shown = policy.replace("_", " ")
+            parts.append(
+                f"the publisher's {shown} is longer than the {theirs.nanoseconds / 1e9:g} s asked for"
+            )
+    return "; ".join(parts)
+
+
+_INFINITE: Final = 2**63 - 1  # [ns]; unspecified is 0, and means the same
+_WEAKER: Final = {
+    "reliability": ("BEST_EFFORT", "RELIABLE"),
+    "durability": ("VOLATILE", "TRANSIENT_LOCAL"),
+    "liveliness": ("AUTOMATIC", "MANUAL_BY_TOPIC"),
+}
+
+
+def _is_weaker(policy: str, offered: str, requested: str) -> bool:
+    return (offered, requested) == _WEAKER[policy]

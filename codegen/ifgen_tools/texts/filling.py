@@ -1,0 +1,180 @@
+"""Values that a user wrote, into a message: what is not mentioned keeps its default."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from ifgen_runtime import yaml_text
+
+from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen_tools.texts.field_types import INTEGERS, FieldType, element_class, field_types, type_name
+
+_HEADER = "std_msgs/msg/Header"
+_TIME = "builtin_interfaces/msg/Time"
+
+SetStamp = Callable[[Any], None]
+"""Puts the time of sending (`builtin_interfaces/msg/Time`) where the user wrote `auto` or `now`."""
+
+
+def read_yaml(text: str, what: str = "the values") -> Any:
+    """A YAML document as a user wrote it. Raises ToolError."""
+    try:
+        return yaml_text.read(text)
+    except yaml_text.YamlError as error:
+        raise ToolError(f"{what} are no YAML: {error}", _YAML_HELP) from None
+
+
+_YAML_HELP = 'write them such as "{linear: {x: 0.5}}", in quotes of the shell'
+
+
+def fill(message: Any, values: Any) -> list[SetStamp]:
+    """Put values into the fields of a message.
+
+    `values` is a mapping from names to values, as YAML has it; None is an empty one. `auto` for a Header and
+    `now` for a Time stand for the time of sending: for each there is a function that sets it. Raises
+    ToolError with the path of the field that is wrong.
+    """
+    stamps: list[SetStamp] = []
+    _fill(message, {} if values is None else values, "", stamps)
+    return stamps
+
+
+def _fill(message: Any, values: Any, path: str, stamps: list[SetStamp]) -> None:
+    types = field_types(type(message))
+    if not isinstance(values, Mapping):
+        example = ", ".join(f"{name}: ..." for name in list(types)[:2])
+        raise _wrong(
+            path, f"expected the fields of {type_name(type(message))}", values, f"write {{{example}}}"
+        )
+    for name, value in values.items():
+        if name not in types:
+            known = f"its fields are {', '.join(types) or 'none'}"
+            raise ToolError(
+                f"{type_name(type(message))} has no field {_join(path, str(name))!r}",
+                did_you_mean(str(name), list(types)) or known,
+            )
+        where = _join(path, name)
+        converted = _converted(message, name, types[name], value, where, stamps)
+        if converted is not _KEPT:
+            try:
+                setattr(message, types[name].attribute, converted)
+            except (AssertionError, TypeError, ValueError, OverflowError) as error:
+                raise ToolError(f"the value of {where!r} does not fit: {error}") from None
+
+
+_KEPT = object()
+"""A value that is in its message already."""
+
+
+def _converted(
+    message: Any, name: str, type_: FieldType, value: Any, where: str, stamps: list[SetStamp]
+) -> Any:
+    if type_.is_collection:
+        return _list(message, name, type_, value, where, stamps)
+    if not type_.is_message:
+        return _basic(type_.element, value, where)
+    inner = getattr(message, type_.attribute)
+    if type_.element == _HEADER and value == "auto":
+        stamps.append(lambda stamp: setattr(inner, "stamp", stamp))
+    elif type_.element == _TIME and value == "now":
+        stamps.append(lambda stamp: setattr(message, type_.attribute, stamp))
+    else:
+        _fill(inner, value, where, stamps)
+    return _KEPT
+
+
+def _list(message: Any, name: str, type_: FieldType, values: Any, where: str, stamps: list[SetStamp]) -> Any:
+    if isinstance(values, bytes) and type_.element in {"uint8", "octet"}:
+        values = list(values)
+    if not isinstance(values, list | tuple):
+        raise _wrong(where, f"expected a list of {type_.element}", values)
+    if type_.is_array and len(values) != type_.size:
+        raise ToolError(f"{where!r} has {type_.size} elements, and {len(values)} are given")
+    if type_.size is not None and len(values) > type_.size:
+        raise ToolError(f"{where!r} has at most {type_.size} elements, and {len(values)} are given")
+    places = [f"{where}[{index}]" for index in range(len(values))]
+    if not type_.is_message:
+        return [_basic(type_.element, value, place) for value, place in zip(values, places, strict=True)]
+    cls = element_class(message, name)
+    elements = [cls() for _ in values]
+    for element, value, place in zip(elements, values, places, strict=True):
+        _fill(element, value, place, stamps)
+    return elements
+
+
+def _basic(type_: str, value: Any, where: str) -> Any:
+    """A value in the Python type of the field."""
+    match type_:
+        case "boolean":
+            if isinstance(value, bool) or value in (0, 1):
+                return bool(value)
+            raise _wrong(where, "expected true or false", value)
+        case "float" | "double" | "long double":
+            return _float(value, where)
+        case "string" | "wstring":
+            return _text(value, where)
+        case "char" | "wchar":  # of IDL: that of .msg is uint8
+            if isinstance(value, str) and len(value) == 1:
+                return value
+            raise _wrong(where, "expected one character", value)
+        case "octet":
+            if isinstance(value, str | bytes) and len(value) == 1:
+                return value.encode("latin-1", "replace") if isinstance(value, str) else value
+            return bytes([_integer("uint8", value, where)])
+        case _:
+            return _integer(type_, value, where)
+
+
+def _text(value: Any, where: str) -> str:
+    try:
+        if isinstance(value, str):
+            value.encode()
+            return value
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            return str(value)  # as ROS does
+    except ValueError:  # half of a character, or more digits than Python writes
+        pass
+    raise _wrong(where, "expected text", value, "put it in quotes within the YAML")
+
+
+def _float(value: Any, where: str) -> float:
+    if isinstance(value, str | int | float) and not isinstance(value, bool):
+        try:
+            return float(value)  # YAML 1.1 takes 1e-3 for text
+        except (ValueError, OverflowError):
+            pass
+    raise _wrong(where, "expected a number", value)
+
+
+def _integer(type_: str, value: Any, where: str) -> int:
+    lowest, highest = INTEGERS[type_]
+    is_number = isinstance(value, int) or (isinstance(value, float) and value.is_integer())
+    if not is_number or isinstance(value, bool):
+        raise _wrong(where, f"expected an integer ({type_})", value)
+    if not lowest <= value <= highest:
+        raise _wrong(where, f"expected {type_}, which is {lowest} to {highest}", value)
+    return int(value)
+
+
+def _wrong(where: str, expected: str, value: Any, help: str = "") -> ToolError:
+    shown = _shown(value)
+    shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
+    return ToolError(
+        f"{f'the value of {where!r}' if where else 'the message'}: {expected}, got {shown}", help
+    )
+
+
+def _shown(value: Any) -> str:
+    """A value as it could be written."""
+    try:
+        return json.dumps(value)
+    except TypeError:  # YAML knows dates, too
+        return str(value)
+    except ValueError:  # an integer with more digits than Python writes
+        return "a very long number"
+
+
+def _join(path: str, name: str) -> str:
+    return f"{path}.{name}" if path else name

@@ -1,0 +1,1 @@
+"""`ifgen top`: a running system at a glance, in a terminal or on a local page."""

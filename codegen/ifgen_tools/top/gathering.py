@@ -1,0 +1,162 @@
+"""Looks at the graph, asks the processes and listens, again and again; each time it makes a snapshot."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Final
+
+from ifgen_tools import discovery
+from ifgen_tools.names import is_hidden
+from ifgen_tools.top import parameters, reports
+from ifgen_tools.top.figures import Figures, compare
+from ifgen_tools.top.graph import Graph, look
+from ifgen_tools.top.listening import Listener, OnMessage, Tap
+from ifgen_tools.top.snapshot import NodeRow, Snapshot, SubscriptionRow, TopicRow
+
+if TYPE_CHECKING:
+    from ifgen_tools.session import Session
+    from ifgen_tools.top.parameters import Parameters
+
+_PATIENCE: Final = 0.25
+"""Seconds that processes have to answer."""
+_ROUNDS: Final = 3
+"""The number of snapshots for which the last report of a process is good."""
+
+
+class Gatherer:
+    """Gathers on behalf of a view. One thread calls `step`, `spin` and `parameters`; `want` may be any."""
+
+    def __init__(
+        self,
+        session: Session,
+        *,
+        include_hidden: bool = False,
+        listens: bool = True,
+        on_message: OnMessage = lambda *_: None,
+    ) -> None:
+        self._session = session
+        self._domain = session.context.get_domain_id()
+        self._include_hidden = include_hidden
+        self._listens = listens
+        self._listener = Listener(session.node, on_message)
+        self._wanted: list[str] = []
+        self._graph = Graph((), {}, ())
+        self._reports: dict[str, reports.Report] = {}
+        self._ages: dict[str, int] = {}
+
+    def want(self, topics: Iterable[str]) -> None:
+        """Listen to these topics, from the next step on."""
+        self._wanted = list(topics)
+
+    def listen(self) -> None:
+        """Begin to listen to what is wanted, without waiting for the next step."""
+        self._listener.update(self._wanted if self._listens else [], self._graph.topics)
+
+    def tap(self, topic: str) -> Tap | None:
+        """What is heard of a topic that is listened to."""
+        return self._listener.taps.get(topic)
+
+    def spin(self, seconds: float) -> None:
+        """Receive for a while."""
+        self._session.wait_for(lambda: False, seconds)
+
+    def parameters(self, node: str) -> Parameters:
+        """Read the parameters of a node."""
+        return parameters.read(self._session, node)
+
+    def close(self) -> None:
+        """Listen no longer."""
+        self._listener.close()
+
+    def step(self) -> Snapshot:
+        """What there is now; rates are those since the last step."""
+        node = self._session.node
+        graph = look(node, include_hidden=self._include_hidden)
+        earlier = self._reports
+        if self._session.transport == "local":
+            self._ask(set(graph.nodes))
+        figures = compare(earlier, self._reports, node.get_fully_qualified_name())
+        self._graph = graph
+        self._listener.turn()
+        self.listen()
+        return self._together(graph, figures)
+
+    def _ask(self, here: set[str]) -> None:
+        """Ask all processes, and wait until those have answered that have done so before."""
+        answers = discovery.survey(self._domain)
+        fresh: dict[str, reports.Report] = {}
+
+        def have_answered() -> bool:
+            come = (reports.read(answer) for answer in answers())
+            fresh.update((report.process, report) for report in come if report is not None)
+            return here.issubset(node for report in fresh.values() for node in report.nodes)
+
+        self._session.wait_for(have_answered, _PATIENCE)
+        self._ages = {each: age + 1 for each, age in self._ages.items()} | dict.fromkeys(fresh, 0)
+        kept = {
+            process: report
+            for process, report in self._reports.items()
+            if self._ages[process] < _ROUNDS and here.intersection(report.nodes)
+        }
+        self._reports = kept | fresh
+        self._ages = {process: self._ages[process] for process in self._reports}
+
+    def _together(self, graph: Graph, figures: Figures) -> Snapshot:
+        subscriptions = tuple(
+            each for each in figures.subscriptions if self._include_hidden or not is_hidden(each.topic)
+        )
+        is_local = self._session.transport == "local"
+        return Snapshot(
+            at=time.time(),
+            transport=self._session.transport,
+            nodes=_nodes(graph, figures),
+            topics=tuple(self._topic(name, graph, figures, subscriptions) for name in graph.topics),
+            subscriptions=subscriptions,
+            executors=figures.executors,
+            services=graph.services,
+            actions=graph.actions,
+            silent=tuple(each for each in graph.nodes if is_local and each not in figures.processes),
+        )
+
+    def _topic(
+        self, name: str, graph: Graph, figures: Figures, subscriptions: tuple[SubscriptionRow, ...]
+    ) -> TopicRow:
+        topic, tap = graph.topics[name], self._listener.taps.get(name)
+        rate = tap.rate if tap is not None else None
+        if topic.publishers and figures.counted.get(name, 0) == len(topic.publishers):
+            rate = figures.rates.get(name, rate)  # exact, and nothing gets lost on the way
+        bandwidth = None
+        if tap is not None and rate is not None and (tap.mean_size is not None or not rate):
+            bandwidth = rate * (tap.mean_size or 0)
+        ends = [each for each in subscriptions if each.topic == name]
+        return TopicRow(
+            name,
+            topic.types,
+            topic.publishers,
+            topic.subscriptions,
+            rate,
+            bandwidth,
+            missed=sum(each.lost + each.dropped for each in ends) if ends else None,
+            fill=max((each.waiting / each.depth for each in ends if each.depth), default=None),
+            note=self._listener.notes.get(name, ""),
+        )
+
+
+def _nodes(graph: Graph, figures: Figures) -> tuple[NodeRow, ...]:
+    publishers = [node for topic in graph.topics.values() for node in topic.publishers]
+    subscriptions = [node for topic in graph.topics.values() for node in topic.subscriptions]
+    servers = [node for service in graph.services for node in service.servers]
+    clients = [node for service in graph.services for node in service.clients]
+    return tuple(
+        NodeRow(
+            node,
+            figures.processes.get(node),
+            publishers.count(node),
+            subscriptions.count(node),
+            servers.count(node),
+            clients.count(node),
+            figures.loads.get(node),
+        )
+        for node in graph.nodes
+    )

@@ -1,0 +1,1 @@
+"""The same as one page in a browser on this machine."""

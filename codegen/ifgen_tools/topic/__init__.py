@@ -1,0 +1,1 @@
+"""`ifgen topic`: looks at topics, listens to them and publishes on them."""

@@ -1,0 +1,243 @@
+"""The verbs of `ifgen topic`, which read their options and leave the work to other modules."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import click
+
+from ifgen_tools import completion, options, qos
+from ifgen_tools.group import ToolGroup
+
+# Late imports: each verb loads what it needs.
+
+_POSITIVE: Final = click.FloatRange(min=0, min_open=True)
+_TOPIC: Final = click.argument("topic_name", metavar="TOPIC", shell_complete=completion.topics)
+
+
+def _window(default: int) -> Callable[[options.Command], options.Command]:
+    return click.option(
+        "-w",
+        "--window",
+        type=click.IntRange(min=1),
+        default=default,
+        metavar="N",
+        help=f"How many messages the figures are about, {default} by default.",
+    )
+
+
+@click.group(cls=ToolGroup)
+def topic() -> None:
+    """Look at topics, listen to them, and publish."""
+
+
+@topic.command("list", epilog="Example: ifgen topic list -t")
+@options.hidden_topics_option
+@click.option("-t", "--show-types", is_flag=True, help="The types as well.")
+@click.option("-c", "--count-topics", "--count", is_flag=True, help="Only how many there are.")
+@click.option("-v", "--verbose", is_flag=True, help="The numbers of publishers and subscribers as well.")
+@options.json_option
+@options.use_sim_time_option
+@options.graph_options
+def list_(**chosen: Any) -> int:
+    """Print the names of all topics."""
+    from ifgen_tools.topic.looking import list_topics
+
+    return list_topics(**chosen)
+
+
+@topic.command(epilog="Example: ifgen topic info -v /chatter")
+@_TOPIC
+@click.option("-v", "--verbose", is_flag=True, help="Each endpoint: its node, type hash, GID and QoS.")
+@options.json_option
+@options.use_sim_time_option
+@options.graph_options
+def info(**chosen: Any) -> int:
+    """Print the type of a topic, and who publishes and subscribes."""
+    from ifgen_tools.topic import looking
+
+    return looking.info(**chosen)
+
+
+@topic.command("type", epilog="Example: ifgen topic type /chatter")
+@_TOPIC
+@options.json_option
+@options.use_sim_time_option
+@options.graph_options
+def type_(**chosen: Any) -> int:
+    """Print the type of a topic."""
+    from ifgen_tools.topic import looking
+
+    return looking.type_(**chosen)
+
+
+@topic.command(epilog="Example: ifgen topic find std_msgs/msg/String")
+@click.argument("topic_type", metavar="TYPE", shell_complete=completion.message_types)
+@click.option("-c", "--count-topics", is_flag=True, help="Only how many there are.")
+@options.hidden_topics_option
+@options.json_option
+@options.use_sim_time_option
+@options.graph_options
+def find(**chosen: Any) -> int:
+    """Print the topics of a type."""
+    from ifgen_tools.topic import looking
+
+    return looking.find(**chosen)
+
+
+@topic.command(epilog="Example: ifgen topic echo /imu --field linear_acceleration --once")
+@_TOPIC
+@click.argument("message_type", metavar="[TYPE]", required=False, shell_complete=completion.message_types)
+@click.option("--once", is_flag=True, help="Print one message, and exit.")
+@click.option("--timeout", type=_POSITIVE, metavar="SECONDS", help="Exit after this time.")
+@click.option("--field", metavar="PATH", help="Only this field, such as pose.position.x or poses[0].x.")
+@click.option(
+    "--filter",
+    "filter_expression",
+    metavar="EXPRESSION",
+    help="Only if this Python expression holds, where m is the message, or the field: m.data > 0.5",
+)
+@click.option("--csv", is_flag=True, help="All values with commas between them.")
+@click.option("--json", "as_json", is_flag=True, help="Each message as one line of JSON.")
+@click.option("--raw", is_flag=True, help="The serialized bytes.")
+@click.option("-f", "--full-length", is_flag=True, help="Long arrays, strings and bytes as a whole.")
+@click.option(
+    "-l",
+    "--truncate-length",
+    type=click.IntRange(min=0),
+    default=128,
+    metavar="N",
+    help="The length after which these are cut, 128 by default.",
+)
+@click.option("--no-arr", is_flag=True, help="No arrays: their type and length in their place.")
+@click.option("--no-str", is_flag=True, help="No strings: their length in their place.")
+@click.option("--flow-style", is_flag=True, help="Lists in one line.")
+@click.option("-i", "--include-message-info", is_flag=True, help="Times and numbers of each message as well.")
+@click.option("--no-lost-messages", is_flag=True, help="Do not say when a message is lost.")
+@click.option(
+    "--lost-messages", is_flag=True, expose_value=False, help="Accepted, as in ROS: it does nothing."
+)
+@qos.qos_options
+@options.use_sim_time_option
+@options.graph_options
+def echo(
+    csv: bool,
+    as_json: bool,
+    raw: bool,
+    full_length: bool,
+    truncate_length: int,
+    no_arr: bool,
+    no_str: bool,
+    flow_style: bool,
+    **chosen: Any,
+) -> int:
+    """Print the messages of a topic.
+
+    TYPE is that of the topic if it is left out. Without --qos-... options, QoS fits all publishers that are
+    there.
+    """
+    from ifgen_tools.texts.yaml_text import Style
+    from ifgen_tools.topic.echoing import echo as run
+
+    forms = [form for form, is_chosen in (("csv", csv), ("json", as_json), ("raw", raw)) if is_chosen]
+    if len(forms) > 1:
+        raise click.UsageError(f"--{forms[0]} and --{forms[1]} exclude each other: leave out one")
+    style = Style(None if full_length else truncate_length, no_arr, no_str, flow_style)
+    return run(form=forms[0] if forms else "yaml", style=style, **chosen)
+
+
+@topic.command(epilog="Example: ifgen topic pub --once /cmd_vel geometry_msgs/msg/Twist '{linear: {x: 0.5}}'")
+@_TOPIC
+@click.argument("message_type", metavar="TYPE", shell_complete=completion.message_types)
+@click.argument("values", metavar="[VALUES]", required=False)
+@click.option("--stdin", is_flag=True, help="Read VALUES from standard input.")
+@click.option("-r", "--rate", type=_POSITIVE, default=1.0, metavar="HZ", help="The rate, 1 Hz by default.")
+@click.option("-1", "--once", is_flag=True, help="Publish once.")
+@click.option("-t", "--times", type=click.IntRange(min=0), metavar="N", help="Publish N times.")
+@click.option(
+    "-p",
+    "--print",
+    "print_every",
+    type=click.IntRange(min=0),
+    default=1,
+    metavar="N",
+    help="Print only each N-th message; 0 prints none.",
+)
+@click.option(
+    "-w",
+    "--wait-matching-subscriptions",
+    "wait_matching",
+    type=click.IntRange(min=0),
+    metavar="N",
+    help="Wait for N subscriptions before; 1 by default with --once and --times, else 0.",
+)
+@click.option(
+    "--max-wait-time-secs", "max_wait", type=_POSITIVE, metavar="SECONDS", help="But no longer than that."
+)
+@click.option(
+    "--keep-alive",
+    type=_POSITIVE,
+    default=0.1,
+    metavar="SECONDS",
+    help="Stay so long after the last message, 0.1 s by default.",
+)
+@click.option("-n", "--node-name", metavar="NAME", help="The name of the publishing node.")
+@qos.qos_options
+@options.use_sim_time_option
+@options.graph_options
+def pub(**chosen: Any) -> int:
+    """Publish a message on a topic, again and again.
+
+    VALUES are YAML. Fields that they do not mention have their default values. `auto` for a header and `now`
+    for a time stand for the time of sending.
+    """
+    from ifgen_tools.topic.publishing import pub as run
+
+    return run(**chosen)
+
+
+@topic.command(epilog="Example: ifgen topic hz /imu /scan --window 100")
+@click.argument("topic_names", metavar="TOPIC...", nargs=-1, required=True, shell_complete=completion.topics)
+@_window(10_000)
+@click.option(
+    "--filter",
+    "filter_expression",
+    metavar="EXPRESSION",
+    help="Only messages for which this Python expression holds, where m is the message.",
+)
+@click.option("--wall-time", is_flag=True, help="By the time of the machine, also if time is simulated.")
+@options.json_option
+@options.use_sim_time_option
+@options.graph_options
+def hz(**chosen: Any) -> int:
+    """Print the rates of topics, every second."""
+    from ifgen_tools.topic import rates
+
+    return rates.hz(**chosen)
+
+
+@topic.command(epilog="Example: ifgen topic bw /camera/image")
+@_TOPIC
+@_window(100)
+@options.json_option
+@options.use_sim_time_option
+@options.graph_options
+def bw(**chosen: Any) -> int:
+    """Print the bandwidth of a topic, every second."""
+    from ifgen_tools.topic import rates
+
+    return rates.bw(**chosen)
+
+
+@topic.command(epilog="Example: ifgen topic delay /imu")
+@_TOPIC
+@_window(10_000)
+@options.json_option
+@options.use_sim_time_option
+@options.graph_options
+def delay(**chosen: Any) -> int:
+    """Print how old messages are by their headers, every second."""
+    from ifgen_tools.topic import rates
+
+    return rates.delay(**chosen)

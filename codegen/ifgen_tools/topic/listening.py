@@ -1,0 +1,109 @@
+"""What the verbs that listen to a topic share: its full name, its class, and QoS that loses nothing."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Final
+
+from ifgen_tools import qos
+from ifgen_tools.errors import ToolError
+from ifgen_tools.session import Session
+from ifgen_tools.types import class_with_hash, interface_class, message_name, topic_class, topic_types
+
+if TYPE_CHECKING:
+    from rclpy.qos import QoSProfile
+
+# Late imports: rclpy is found once the session is open.
+
+_DEPTH: Final = 1000
+"""Messages that wait for a tool unless the user says how many: those of a second, where they are small."""
+
+
+def full_topic(session: Session, name: str) -> str:
+    """The full name of a topic that a user wrote. Raises ToolError if it can be none."""
+    from rclpy.exceptions import InvalidTopicNameException
+    from rclpy.expand_topic_name import expand_topic_name
+    from rclpy.validate_full_topic_name import validate_full_topic_name
+
+    node = session.node
+    try:
+        validate_full_topic_name(expand_topic_name(name, node.get_name(), node.get_namespace()))
+    except (InvalidTopicNameException, ValueError) as error:
+        reason = str(error).partition("\n")[0].removeprefix("Invalid topic name: ").rstrip(":")
+        raise ToolError(f"{name!r} can be no topic: {reason}", "write it such as /robot/odometry") from None
+    return node.resolve_topic_name(name)
+
+
+def find_topic(session: Session, name: str, spin_time: float | None, *, must_exist: bool = True) -> str:
+    """Wait until the graph is known, and for a topic that must exist; return its full name in any case."""
+    topic = full_topic(session, name)
+    session.discover(spin_time, until=lambda: not must_exist or bool(topic_types(session.node, topic)))
+    return topic
+
+
+def class_on(session: Session, topic: str, type_name: str | None) -> type[Any]:
+    """The class of a topic, of the type that the user named if there is a name.
+
+    If the topic has that type, its own definition of it counts. Raises ToolError.
+    """
+    if type_name is None:
+        return topic_class(session.node, topic)
+    written = message_name(type_name)
+    if (found := _class_in_use(session, topic, written)) is not None:
+        return found
+    try:
+        return interface_class(written)
+    except ToolError:  # whoever has it may be late
+        session.discover(until=lambda: bool(topic_types(session.node, topic)))
+        if (found := _class_in_use(session, topic, written)) is not None:
+            return found
+        raise
+
+
+def _class_in_use(session: Session, topic: str, type_name: str) -> type[Any] | None:
+    known = [each for each in topic_types(session.node, topic) if each.name == type_name]
+    return class_with_hash(session.node, topic, known[0]) if known else None
+
+
+def wait_for_topic(session: Session, topic: str) -> type[Any]:
+    """The class of a topic, once somebody has it; says so if nobody has it yet. Raises ToolError."""
+    if not topic_types(session.node, topic):
+        print(f"WARNING: topic [{topic}] does not appear to be published yet", file=sys.stderr, flush=True)
+        session.wait_for(lambda: bool(topic_types(session.node, topic)))
+    return topic_class(session.node, topic)
+
+
+def profile_for(session: Session, topic: str, chosen: dict[str, Any]) -> QoSProfile:
+    """The profile to listen with: what the user chose, else one that fits all publishers."""
+    publishers = session.node.get_publishers_info_by_topic(topic)
+    profile = qos.profile_of(chosen, "sensor_data")
+    if not set(chosen) - {"profile"}:
+        for remark in qos.fitting(profile, publishers):
+            print(remark, file=sys.stderr, flush=True)
+        if "profile" not in chosen:
+            profile.depth = _DEPTH
+    return profile
+
+
+def listen(
+    session: Session,
+    topic: str,
+    cls: type[Any],
+    hear: Callable[..., None],
+    chosen: dict[str, Any],
+    *,
+    raw: bool = False,
+    on_lost: Callable[[Any], None] | None = None,
+) -> None:
+    """Subscribe, and say on stderr which publishers do not match what the user chose."""
+    from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
+
+    profile = profile_for(session, topic, chosen)
+    on_obstacle = qos.teller_of_obstacles(session.node, topic, profile, publishes=False)
+    subscribe: Any = session.node.create_subscription  # its overloads know no `raw` that is decided here
+    events = SubscriptionEventCallbacks(message_lost=on_lost, incompatible_qos=on_obstacle)
+    try:
+        subscribe(cls, topic, hear, profile, raw=raw, event_callbacks=events)
+    except UnsupportedEventTypeError:  # this middleware does not tell
+        subscribe(cls, topic, hear, profile, raw=raw)

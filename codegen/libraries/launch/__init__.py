@@ -1,0 +1,48 @@
+"""Launch descriptions: what to start, with which arguments, and what to do when something happens.
+
+The part of launch of ROS 2 Jazzy that `ifgen launch` runs, under upstream's names. The objects describe.
+`LaunchContext.host` is whoever runs them.
+"""
+
+from typing import NoReturn
+
+from launch import actions as actions
+from launch import conditions as conditions
+from launch import event_handlers as event_handlers
+from launch import events as events
+from launch import launch_description_sources as launch_description_sources
+from launch import logging as logging
+from launch import substitutions as substitutions
+from launch.action import Action
+from launch.condition import Condition
+from launch.event import Event
+from launch.event_handler import EventHandler
+from launch.launch_context import LaunchContext
+from launch.launch_description import LaunchDescription
+from launch.launch_description_entity import LaunchDescriptionEntity
+from launch.launch_description_source import LaunchDescriptionSource
+from launch.some_entities_type import SomeEntitiesType
+from launch.some_substitutions_type import SomeSubstitutionsType
+from launch.substitution import Substitution
+
+__all__ = [
+    "Action",
+    "Condition",
+    "Event",
+    "EventHandler",
+    "LaunchContext",
+    "LaunchDescription",
+    "LaunchDescriptionEntity",
+    "LaunchDescriptionSource",
+    "SomeEntitiesType",
+    "SomeSubstitutionsType",
+    "Substitution",
+]
+
+
+def __getattr__(name: str) -> NoReturn:
+    if name in {"LaunchService", "LaunchIntrospector"}:
+        raise AttributeError(
+            f"ifgen's launch has no {name}: `ifgen launch FILE` runs and prints descriptions"
+        )
+    raise AttributeError(f"module 'launch' has no attribute {name!r}")

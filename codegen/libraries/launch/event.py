@@ -1,0 +1,7 @@
+"""The base of events."""
+
+
+class Event:
+    """Something that happened; handlers match and answer it."""
+
+    name = "launch.Event"

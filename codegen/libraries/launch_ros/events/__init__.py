@@ -1,0 +1,6 @@
+"""Events in the life of nodes."""
+
+from launch_ros.events import lifecycle as lifecycle
+from launch_ros.events.matchers import matches_node_name as matches_node_name
+
+__all__ = ["lifecycle", "matches_node_name"]

@@ -1,0 +1,28 @@
+"""The moment before the command line runs."""
+
+from __future__ import annotations
+
+import sys
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+
+import pytest
+from ifgen import __main__ as program
+
+COMMAND_LINE = "ifgen.cli.main"
+
+
+class Impatient(MetaPathFinder):
+    """Somebody who presses Ctrl-C while the command line is imported."""
+
+    def find_spec(self, fullname: str, path: object, target: object = None) -> ModuleSpec | None:
+        if fullname == COMMAND_LINE:
+            raise KeyboardInterrupt
+        return None
+
+
+def test_ctrl_c_before_it_begins(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.delitem(sys.modules, COMMAND_LINE, raising=False)
+    monkeypatch.setattr(sys, "meta_path", [Impatient(), *sys.meta_path])
+    assert program.main() == 130
+    assert capsys.readouterr().err == ""
