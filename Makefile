@@ -52,11 +52,11 @@ lint: $(VENV)/.test  ## check style, types, imports between rooms, and that gene
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy $(TYPED)
-	MYPYPATH=codegen/underlay $(BIN)/mypy -p rclpy -p rmw_local -p ifgen_pytest
+	MYPYPATH=codegen/underlay:codegen/libraries $(BIN)/mypy -p rclpy -p rmw_local -p ifgen_pytest -p ifgen_tools
 	MYPYPATH=codegen/underlay:codegen/libraries $(BIN)/mypy $(addprefix -p ,$(LIBRARIES))
-	MYPYPATH=codegen/underlay:examples:$(NODES) $(BIN)/mypy -p humanoid
+	MYPYPATH=codegen/underlay:examples/humanoid:$(NODES) $(BIN)/mypy -p humanoid
 	$(BIN)/pyright
-	PYTHONPATH=codegen/underlay:codegen/libraries:examples $(BIN)/lint-imports
+	PYTHONPATH=codegen/underlay:codegen/libraries:examples/humanoid $(BIN)/lint-imports
 	$(BIN)/ifgen generate --check
 
 bench: $(VENV)/.test  ## measure, and write docs/benchmarks.md
@@ -77,7 +77,7 @@ $(VENV)/.run: pyproject.toml $(wildcard codegen/*/pyproject.toml) .ci/make_venv.
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run $(VENV)/.native
-	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[net,sim]' --group dev --group $(REFERENCE)
+	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[net,sim,tools]' --group dev --group $(REFERENCE)
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.

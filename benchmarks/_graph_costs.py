@@ -15,11 +15,11 @@ from unittest.mock import patch
 
 import numpy as np
 from _sampler import Samples, sampled
-from humanoid.show.director import Director
 from humanoid.simulation.sim import Noise
 from humanoid.trials import graph_trials as trials
 from humanoid.trials.graph import NodeGraph
 from humanoid.trials.harness import Lockstep
+from humanoid.trials.user import User
 from rclpy.executors import SingleThreadedExecutor
 
 PHYSICS, CODEC, TRANSPORT = "physics", "messages to bytes and back", "transport and executor"
@@ -40,13 +40,15 @@ ROBOT = {
     "battery, standby, diagnostics": (
         "/humanoid/simulation/battery.py",
         "/humanoid/control/standby.py",
+        "/humanoid/sensing/joints.py",
+        "/humanoid/simulation/safety.py",
         "/humanoid/ros/diagnostics.py",
     ),
 }
 GRAPH = {
     "data to messages and back": ("/humanoid/ros/messages.py",),
     CODEC: ("/ifgen_runtime/",),  # and functions of the generated packages
-    "callbacks of nodes": ("/humanoid/nodes/", "_base.py"),
+    "callbacks of nodes": ("/generated/",),
     TRANSPORT: ("/rclpy/", "/rmw_local/"),
 }
 MEASURING = ("/humanoid/show/director.py", "/humanoid/trials/graph_trials.py")
@@ -61,7 +63,7 @@ def show_costs(walks: int) -> None:
     for seed in range(walks):
         with NodeGraph(seed=seed) as graph, sampled(look_at) as found:
             graph.play(trials.walk_straight)
-            simulated += graph.director.now
+            simulated += graph.user.now
         samples.counts += found.counts
         samples.cpu += found.cpu
         loops.append(_loop(seed))
@@ -137,9 +139,9 @@ def _callbacks() -> dict[str, float]:
         calls[watch.node.get_name()] += 1
         run(executor, watch)
 
-    async def walk(director: Director) -> None:
+    async def walk(user: User) -> None:
         calls.clear()
-        await trials.walk_straight(director)
+        await trials.walk_straight(user)
 
     with patch.object(SingleThreadedExecutor, "_run", counted), NodeGraph(seed=0) as graph:
         seconds = graph.play(walk).simulated

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 from _table import Row, is_quick, show
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples/humanoid"))
 
 from humanoid.data import Mode
 from humanoid.kinematics import poses

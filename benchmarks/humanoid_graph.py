@@ -3,14 +3,15 @@
 python benchmarks/humanoid_graph.py [--quick]     fewer goals, poses and pushes
 
 All nodes of `ifgen demo` in one process on the local transport, in lockstep, with noisy sensors; everything
-is requested and measured through messages. "True state" is the same without noise, and with the controller's
-/odom remapped to the simulator's ground truth. Errors are true errors; times are simulated unless they say
-CPU.
+is requested and measured through messages. In the last rows the nodes are in processes that share virtual
+time. "True state" is the same without noise, and with the controller's /odom remapped to the simulator's
+ground truth. Errors are true errors; times are simulated unless they say CPU.
 """
 
 from __future__ import annotations
 
 import math
+import os
 import sys
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
@@ -21,7 +22,7 @@ from typing import Any
 import numpy as np
 from _table import Row, is_quick, show
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples/humanoid"))
 
 import ifgen
 
@@ -30,9 +31,11 @@ ifgen.activate("local")
 # ruff: noqa: E402  # importable only from here on
 from _graph_costs import show_costs
 from humanoid.planning.choreography import DANCES
-from humanoid.show.director import Director, ScenarioError, Score
+from humanoid.show.director import Score
 from humanoid.trials import graph_trials as trials
+from humanoid.trials import spread
 from humanoid.trials.graph import NodeGraph
+from humanoid.trials.user import ScenarioError, User
 
 GOAL = (1.0, 0.5, math.pi / 2)
 TRUE_STATE = {"true_state": True, "noise": False}
@@ -40,7 +43,19 @@ TRUE_STATE = {"true_state": True, "noise": False}
 
 def main() -> None:
     """Measure and print."""
-    measures = (standing, walking, goal, cancelling, pushes, dancing, goals, kinematics, repeating, speed)
+    measures = (
+        standing,
+        walking,
+        goal,
+        cancelling,
+        pushes,
+        dancing,
+        goals,
+        kinematics,
+        repeating,
+        speed,
+        spreading,
+    )
     quick = is_quick(__doc__)
     show(measures, quick)
     show_costs(1 if quick else 5)
@@ -55,15 +70,15 @@ class Outcomes:
     scores: list[Score] = field(default_factory=list)
     results: list[Any] = field(default_factory=list)
 
-    def play(self, trial: Callable[[Director], Awaitable[Any]], **options: Any) -> None:
+    def play(self, trial: Callable[[User], Awaitable[Any]], **options: Any) -> None:
         """One more trial."""
         with NodeGraph(**options) as graph:
             try:
                 self.results.append(graph.play(trial).result)
             except ScenarioError as error:
                 self.problems.append(str(error))
-            self.scores.append(graph.director.score)
-        self.falls += bool(graph.director.score.falls)
+            self.scores.append(graph.user.score)
+        self.falls += bool(graph.user.score.falls)
 
     def __str__(self) -> str:
         others = [problem for problem in self.problems if "fallen" not in problem]
@@ -74,7 +89,7 @@ class Outcomes:
 def standing(quick: bool) -> list[Row]:
     """The drift of the body."""
     outcomes, seconds = Outcomes(), 10.0 if quick else 60.0
-    outcomes.play(lambda director: trials.stand(director, seconds), seed=1)
+    outcomes.play(lambda user: trials.stand(user, seconds), seed=1)
     moved = max(outcomes.results, default=math.nan)
     return [(f"stands {seconds:.0f} s", "no fall", f"{outcomes}, moved {moved * 1e3:.1f} mm at most")]
 
@@ -102,7 +117,7 @@ def goal(quick: bool) -> list[Row]:
     for name, options in (("true state", TRUE_STATE), ("sensors", {})):
         outcomes = Outcomes()
         for seed in range(1 if options else 3):
-            outcomes.play(lambda director: trials.walk_to(director, GOAL, 0.0, 0), seed=seed, **options)
+            outcomes.play(lambda user: trials.walk_to(user, GOAL, 0.0, 0), seed=seed, **options)
         errors = [error for score in outcomes.scores for error in score.goal_errors]
         found = f"{outcomes}, {1e3 * max(errors, default=math.nan):.1f} mm at most"
         rows.append((f"goal (1, 0.5, 90 degrees), {name}", "<= 30 mm", found))
@@ -199,6 +214,26 @@ def speed(quick: bool) -> list[Row]:
         cpu.append(played.simulated / played.cpu)
     found = f"{np.median(real):.1f} x real time on the wall, {np.median(cpu):.1f} x in CPU time"
     return [("12 steps, all nodes in one process", ">= 1 x", found)]
+
+
+def spreading(quick: bool) -> list[Row]:
+    """The same in lockstep, in one process and in four, by turns."""
+    factors: dict[int, list[float]] = {1: [], 4: []}
+    hashes: set[tuple[int, str]] = set()
+    seeds = range(1 if quick else 3)
+    for seed in seeds:
+        for processes, found in factors.items():
+            played = spread.play("walk_straight", processes=processes, seed=seed).played
+            assert played is not None
+            found.append(played.simulated / played.real)
+            hashes.add((seed, played.state_hash))
+    load = f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
+    rows = [
+        (f"12 steps in lockstep, {name}", asked, f"{np.median(factors[count]):.1f} x real time ({load})")
+        for count, name, asked in ((1, "one process", ""), (4, "four processes", ">= 1 x"))
+    ]
+    same = len(hashes) == len(seeds)
+    return [*rows, ("state hash in four processes and in one", "equal", "equal" if same else "different")]
 
 
 if __name__ == "__main__":

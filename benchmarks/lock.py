@@ -20,7 +20,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ifgen.diagnostics import Source
-from ifgen.evolution import lock_file, lock_text, locked
+from ifgen.evolution.lock import comparison
+from ifgen.evolution.lock import file as lock_file
+from ifgen.evolution.lock import text as lock_text
 from ifgen.pipeline import stages
 
 PACKAGES, MESSAGES = 10, 100
@@ -44,7 +46,7 @@ def main() -> None:
         for what, function in (
             ("text of the lock file from definitions", lambda: lock_text.text([registry])),
             ("read it, hashes included", lambda: lock_file.parse(Source(path, text))),
-            ("compare it with the project", lambda: locked.check(lock, [registry])),
+            ("compare it with the project", lambda: comparison.check(lock, [registry])),
         ):
             print(f"| {what} | {1e3 * timed(function, rounds):.0f} |", flush=True)
         print("\n| `ifgen generate` | without [ms] | `--locked` [ms] |\n|---|---:|---:|")

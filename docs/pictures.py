@@ -1,8 +1,8 @@
-"""Draws the pictures of architecture.md: `python docs/pictures.py`. With `--check` it compares them only.
+"""Draws the pictures of the pages: `python docs/pictures.py`. With `--check` it compares them only.
 
 Nothing in them is written here. rooms.svg has the floors of the import contract in pyproject.toml, the
 imports that the modules make, and the first sentence of each room. message.svg has the steps that
-architecture.md lists, whose files exist.
+architecture.md lists, and processes.svg those of processes.md. Their files exist.
 """
 
 from __future__ import annotations
@@ -194,16 +194,16 @@ class Step(NamedTuple):
     what: str
 
 
-def steps(walk: str) -> list[Step]:
-    """The numbered list after a line of architecture.md. SystemExit if one of its files does not exist."""
-    page = (DOCS / "architecture.md").read_text(encoding="utf-8").partition(walk)[2]
+def steps(walk: str, page_name: str = "architecture.md") -> list[Step]:
+    """The numbered list after a line of a page. SystemExit if one of its files does not exist."""
+    page = (DOCS / page_name).read_text(encoding="utf-8").partition(walk)[2]
     listed = re.search(r"(?:^\d+\. .*\n)+", page, re.MULTILINE)
     found = re.findall(r"^\d+\. `([^`]+)`:? (.*)$", listed[0] if listed else "", re.MULTILINE)
     places = (TOOLKIT, ROOT / "codegen/underlay", ROOT)
     if missing := [file for file, _ in found if not any((place / file).is_file() for place in places)]:
-        raise SystemExit(f"architecture.md names what does not exist: {', '.join(missing)}")
+        raise SystemExit(f"{page_name} names what does not exist: {', '.join(missing)}")
     if not found:
-        raise SystemExit(f"architecture.md has no list after {walk!r}")
+        raise SystemExit(f"{page_name} has no list after {walk!r}")
     return [Step(file, re.sub(r" \(at the top.*|`", "", what)) for file, what in found]
 
 
@@ -271,9 +271,49 @@ def message() -> str:
     return _svg(height, "The way of one message", [*left.parts, *right.parts, f'<path d="{way}"/>'])
 
 
+# What processes share, by the modules that use it, and who is on its other side.
+_SHARED: Final = (
+    ("memory.py", "/dev/shm/ifgen-<user>/", "a file, as large as needed", "another process"),
+    ("doorbell.py", "/tmp/ifgen-<user>/<domain>/", "a socket to ring at", "another process"),
+    ("engine.py", "/tmp/ifgen-<user>/<domain>/", "a socket of the session", "another process"),
+    ("engine.py", "ifgen router", "tcp or tls, where you say so", "another machine"),
+)
+
+
+def processes() -> str:
+    """The picture of what is between processes."""
+    left = Column(20, 400, "a process")
+    left.add_rooms(steps("From the program down", "processes.md"))
+    at = {
+        step.file.rpartition("/")[2]: box.top + 36 + _STEP * index
+        for box, held in left.boxes
+        for index, step in enumerate(held)
+    }
+    parts, height, width = list(left.parts), 44.0, 230.0
+    sides: dict[str, list[Box]] = {}
+    top = 0.0
+    for module, name, what, side in _SHARED:
+        top = max(at[module] - height / 2, top + height + 14)
+        box = Box(475, top, width, height)
+        parts += [_box(box), _text(box.left + 12, top + 19, name, "file")]
+        parts += [_text(box.left + 12, top + 35, what, "small")]
+        parts.append(f'<path d="M420 {at[module]:g} H448 V{top + height / 2:g} H{box.left:g}"/>')
+        parts.append(f'<path d="M{WIDTH - 150:g} {top + height / 2:g} H{box.left + width:g}"/>')
+        sides.setdefault(side, []).append(box)
+    for side, boxes in sides.items():
+        first = left.boxes[0][0].top if side == "another process" else boxes[0].top
+        box = Box(WIDTH - 150, first, 130, boxes[-1].bottom - first)
+        parts += ['<g class="bound">', _box(box), "</g>", _text(box.middle, first + 22, side, "", "middle")]
+        who = "the same layers" if side == "another process" else "or rmw_zenoh"
+        parts.append(_text(box.middle, first + 38, who, "small", "middle"))
+    foot = max(left.boxes[-1][0].bottom, top + height) + 14
+    return _svg(foot, "Between processes", parts)
+
+
 def main(arguments: Sequence[str]) -> int:
     """Draw the pictures; with --check compare them only, and return 1 if they differ."""
-    pictures = {DOCS / "rooms.svg": rooms(), DOCS / "message.svg": message()}
+    drawn = {"rooms.svg": rooms(), "message.svg": message(), "processes.svg": processes()}
+    pictures = {DOCS / name: text for name, text in drawn.items()}
     if "--check" not in arguments:
         for path, text in pictures.items():
             path.write_text(text, encoding="utf-8")

@@ -16,7 +16,7 @@ setup(
         ("share/battery_monitor/config", ["config/battery_monitor.yaml"]),
         ("share/battery_monitor/nodl", ["nodl/battery_monitor.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

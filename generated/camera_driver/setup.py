@@ -16,7 +16,7 @@ setup(
         ("share/camera_driver/config", ["config/camera_driver.yaml"]),
         ("share/camera_driver/nodl", ["nodl/camera_driver.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

@@ -16,7 +16,7 @@ setup(
         ("share/dance_action_server/config", ["config/dance_action_server.yaml"]),
         ("share/dance_action_server/nodl", ["nodl/dance_action_server.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

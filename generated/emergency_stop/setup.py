@@ -16,7 +16,7 @@ setup(
         ("share/emergency_stop/config", ["config/emergency_stop.yaml"]),
         ("share/emergency_stop/nodl", ["nodl/emergency_stop.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

@@ -16,7 +16,7 @@ setup(
         ("share/face_detection/config", ["config/face_detection.yaml"]),
         ("share/face_detection/nodl", ["nodl/face_detection.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

@@ -16,7 +16,7 @@ setup(
         ("share/footstep_generation_server/config", ["config/footstep_generation_server.yaml"]),
         ("share/footstep_generation_server/nodl", ["nodl/footstep_generation_server.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

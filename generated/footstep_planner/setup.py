@@ -16,7 +16,7 @@ setup(
         ("share/footstep_planner/config", ["config/footstep_planner.yaml"]),
         ("share/footstep_planner/nodl", ["nodl/footstep_planner.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

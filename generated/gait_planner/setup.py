@@ -16,7 +16,7 @@ setup(
         ("share/gait_planner/config", ["config/gait_planner.yaml"]),
         ("share/gait_planner/nodl", ["nodl/gait_planner.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

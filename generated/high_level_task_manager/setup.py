@@ -16,7 +16,7 @@ setup(
         ("share/high_level_task_manager/config", ["config/high_level_task_manager.yaml"]),
         ("share/high_level_task_manager/nodl", ["nodl/high_level_task_manager.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

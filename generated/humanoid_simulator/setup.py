@@ -16,7 +16,7 @@ setup(
         ("share/humanoid_simulator/config", ["config/humanoid_simulator.yaml"]),
         ("share/humanoid_simulator/nodl", ["nodl/humanoid_simulator.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

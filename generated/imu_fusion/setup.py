@@ -16,7 +16,7 @@ setup(
         ("share/imu_fusion/config", ["config/imu_fusion.yaml"]),
         ("share/imu_fusion/nodl", ["nodl/imu_fusion.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

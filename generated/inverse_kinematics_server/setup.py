@@ -16,7 +16,7 @@ setup(
         ("share/inverse_kinematics_server/config", ["config/inverse_kinematics_server.yaml"]),
         ("share/inverse_kinematics_server/nodl", ["nodl/inverse_kinematics_server.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

@@ -16,7 +16,7 @@ setup(
         ("share/joint_controller/config", ["config/joint_controller.yaml"]),
         ("share/joint_controller/nodl", ["nodl/joint_controller.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

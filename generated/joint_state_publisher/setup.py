@@ -16,7 +16,7 @@ setup(
         ("share/joint_state_publisher/config", ["config/joint_state_publisher.yaml"]),
         ("share/joint_state_publisher/nodl", ["nodl/joint_state_publisher.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

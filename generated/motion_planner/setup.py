@@ -16,7 +16,7 @@ setup(
         ("share/motion_planner/config", ["config/motion_planner.yaml"]),
         ("share/motion_planner/nodl", ["nodl/motion_planner.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

@@ -16,7 +16,7 @@ setup(
         ("share/navigation_action_server/config", ["config/navigation_action_server.yaml"]),
         ("share/navigation_action_server/nodl", ["nodl/navigation_action_server.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

@@ -16,7 +16,7 @@ setup(
         ("share/speech_recognition/config", ["config/speech_recognition.yaml"]),
         ("share/speech_recognition/nodl", ["nodl/speech_recognition.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

@@ -16,7 +16,7 @@ setup(
         ("share/teleop/config", ["config/teleop.yaml"]),
         ("share/teleop/nodl", ["nodl/teleop.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

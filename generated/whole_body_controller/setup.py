@@ -16,7 +16,7 @@ setup(
         ("share/whole_body_controller/config", ["config/whole_body_controller.yaml"]),
         ("share/whole_body_controller/nodl", ["nodl/whole_body_controller.nodl.yaml"]),
     ],
-    install_requires=["setuptools"],
+    install_requires=["setuptools", "humanoid"],
     extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=True,
     maintainer="ifgen maintainers",

@@ -132,7 +132,7 @@ def changed(draw: st.DrawFn) -> tuple[Any, str]:
     return kind, text
 
 
-@settings(quietly, max_examples=120)
+@settings(quietly, max_examples=60)
 @given(drawn=changed())
 def test_changed_texts(drawn: tuple[Any, str]) -> None:
     """Both agree however such a text is changed."""

@@ -28,7 +28,7 @@ from .strategies import messages
 from .support import Classes
 
 
-@settings(max_examples=500)
+@settings(max_examples=150)
 @given(data=st.data())
 def test_there_and_back(classes: Classes, data: st.DataObject) -> None:
     cls = classes[data.draw(st.sampled_from(sorted(classes)))]
@@ -41,7 +41,7 @@ def test_there_and_back(classes: Classes, data: st.DataObject) -> None:
     assert serialize(from_json(cls, to_json(message, indent=2).encode())) == serialize(message)
 
 
-@settings(max_examples=500)
+@settings(max_examples=150)
 @given(data=st.data())
 def test_any_document(classes: Classes, data: st.DataObject) -> None:
     """Any JSON for a field becomes a message that can be sent, or a ConversionError."""

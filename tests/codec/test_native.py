@@ -71,14 +71,14 @@ def test_every_class_runs_in_c(classes: Classes) -> None:
     assert chosen().refused.keys().isdisjoint(classes.values())
 
 
-@settings(max_examples=150)
+@settings(max_examples=80)
 @given(data=st.data())
 @pytest.mark.parametrize("name", CORNERS)
 def test_corners(classes: Classes, name: str, data: st.DataObject) -> None:
     check(data.draw(messages(classes[f"codec_msgs/msg/{name}"])))
 
 
-@settings(max_examples=500)
+@settings(max_examples=250)
 @given(data=st.data())
 def test_every_type(classes: Classes, data: st.DataObject) -> None:
     cls = classes[data.draw(st.sampled_from(sorted(classes)))]

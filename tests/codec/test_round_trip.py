@@ -22,14 +22,14 @@ from .support import Classes, without_slow_path
 CORNERS = ["Arrays", "Bounds", "Deep", "Letters", "Sequences", "Shifting", "Wide", "Words"]
 
 
-@settings(max_examples=300)
+@settings(max_examples=120)
 @given(data=st.data())
 @pytest.mark.parametrize("name", CORNERS)
 def test_corners(classes: Classes, name: str, data: st.DataObject) -> None:
     check(data.draw(messages(classes[f"codec_msgs/msg/{name}"])))
 
 
-@settings(max_examples=1000)
+@settings(max_examples=500)
 @given(data=st.data())
 def test_every_type(classes: Classes, data: st.DataObject) -> None:
     """Every type gets its turn at its default values; hypothesis then chooses among all of them."""

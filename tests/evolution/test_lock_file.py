@@ -10,7 +10,8 @@ import pytest
 from ifgen.definition.interfaces import Constant, Field, Registry
 from ifgen.definition.type_description import TypeHashes, described_types
 from ifgen.diagnostics import Diagnostic, InputError, Source
-from ifgen.evolution import lock_file, lock_text
+from ifgen.evolution.lock import file as lock_file
+from ifgen.evolution.lock import text as lock_text
 from ifgen.pipeline import stages
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -48,6 +48,7 @@ def test_a_hundred_interface_packages_pass(tmp_path: Path, transport: str) -> No
     assert failed == {f"drawn{number}_msgs": set() for number in range(100)}, output
 
 
+@pytest.mark.slow
 def test_some_nodes_pass_whatever_their_callbacks_do(tmp_path: Path) -> None:
     write_nodes(4, tmp_path)  # of each style
     failed, output = run(tmp_path, "--transport=local", path=[tmp_path / "generated"])

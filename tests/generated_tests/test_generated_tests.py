@@ -13,7 +13,7 @@ import ifgen
 import pytest
 
 from .mutations import MUTATIONS
-from .running import needs_rclpy, on_both, run
+from .running import needs_rclpy, on_both, on_real_rclpy_slowly, run
 
 HERE = Path(__file__).parent
 NODES = sorted(path.name.removesuffix(".nodl.yaml") for path in (HERE / "nodes").iterdir())
@@ -59,6 +59,7 @@ def test_they_pass(generated: Path, transport: str) -> None:
     assert not list(generated.rglob(".hypothesis"))
 
 
+@pytest.mark.slow
 @needs_rclpy
 @pytest.mark.timeout(300)
 def test_they_pass_without_the_plugin(generated: Path, tmp_path: Path) -> None:
@@ -173,7 +174,7 @@ USERS = {
 
 
 @pytest.mark.timeout(300)
-@on_both
+@on_real_rclpy_slowly
 def test_what_you_do_in_callbacks_is_yours(tmp_path: Path, transport: str) -> None:
     """The contract also holds for nodes that do more than new ones; that is for the user's own first test."""
     for package in USERS:

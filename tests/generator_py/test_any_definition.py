@@ -189,7 +189,7 @@ def load(message: Message) -> types.ModuleType:
     return module
 
 
-@settings(max_examples=150)
+@settings(max_examples=60)
 @given(messages())
 def test_the_class_works(message: Message) -> None:
     module = load(message)

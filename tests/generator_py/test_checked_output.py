@@ -58,7 +58,7 @@ def run(*command: str | Path, path: Path | None = None) -> subprocess.CompletedP
         env=environment,
         capture_output=True,
         text=True,
-        timeout=110,
+        timeout=280,
         check=False,
     )
 

@@ -17,8 +17,8 @@ from typing import Any
 def play(*trials: tuple[str, list[Any], dict[str, Any]], hash_seed: int = 0) -> list[dict[str, Any]]:
     """Play trials in another process: functions of `humanoid.trials.graph_trials`, their arguments, the graph's options.
 
-    Returns for each the result or the problem, the score and the state hash. The option `split` puts the
-    simulator into a process of its own.
+    Returns for each the result or the problem, the score and the state hash. With the option `processes`, the nodes
+    are in lockstep, in one process or in four.
     """
     done = subprocess.run(
         [sys.executable, __file__, json.dumps(trials)],
@@ -36,27 +36,28 @@ def play(*trials: tuple[str, list[Any], dict[str, Any]], hash_seed: int = 0) -> 
 def _main() -> None:
     import ifgen
 
-    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples"))
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "examples/humanoid"))
     ifgen.activate("local")
     print(json.dumps([_play(*each) for each in json.loads(sys.argv[1])]))
 
 
 def _play(trial: str, arguments: list[Any], options: dict[str, Any]) -> dict[str, Any]:
-    from humanoid.show.director import ScenarioError
-    from humanoid.trials import bridge, graph_trials
+    from humanoid.trials import graph_trials, spread
     from humanoid.trials.graph import NodeGraph
+    from humanoid.trials.user import ScenarioError
 
-    make = bridge.split if options.pop("split", False) else NodeGraph
-    found: dict[str, Any] = {"problem": ""}
-    with make(**options) as graph:
-        try:
-            played = graph.play(lambda director: getattr(graph_trials, trial)(director, *arguments))
-        except ScenarioError as error:
-            found["problem"] = str(error)
-        else:
-            found.update(result=played.result, hash=played.state_hash)
-        score = graph.director.score
-    return {**found, **asdict(score), "foot_error": score.foot_error}
+    if "processes" in options:
+        played, problem, score = spread.play(trial, arguments, **options)
+    else:
+        played, problem = None, ""
+        with NodeGraph(**options) as graph:
+            try:
+                played = graph.play(lambda director: getattr(graph_trials, trial)(director, *arguments))
+            except ScenarioError as error:
+                problem = str(error)
+            score = graph.user.score
+    found = {"result": played.result, "hash": played.state_hash} if played else {}
+    return {**found, "problem": problem, **asdict(score), "foot_error": score.foot_error}
 
 
 if __name__ == "__main__":

@@ -14,9 +14,11 @@ from pathlib import Path
 
 import pytest
 from humanoid.robot.mjcf import write_mjcf
+from ifgen_pytest.domains import own_domain
 
 pytestmark = pytest.mark.timeout(600)
 REAL = importlib.util.find_spec("rpyutils") is not None
+needs_real = pytest.mark.skipif(not REAL, reason="real rclpy is not installed")
 
 
 def demo(*words: str, timeout: float = 500) -> dict[str, str]:
@@ -123,8 +125,96 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
         (["--headless", "--web"], "--headless cannot be used with --web"),
         (["--port", "8001"], "--port needs --web"),
         (["--joint-map", __file__], "--joint-map needs --model"),
+        (["--idle", "--scenario", "walk"], "--idle cannot be used with --scenario"),
+        (["--scenario", "polka"], "there is no scenario polka: choose one of all, dance, push, stop, walk"),
+        (["--without", "tail"], "the robot has no node 'tail': it has battery_monitor, "),
+        (["--replace", "gait_planner"], "write NODE=FILE_OR_MODULE, such as gait_planner=mine.py"),
+        (["--replace", "gait_planner=nobody.py"], "there is no file nobody.py"),
+        (["--replace", "gait_planner=no_module"], "the module no_module cannot be imported"),
+        (["--replace", "gait_planner=json"], "json: expected one class that derives from rclpy's Node"),
     ):
         refused(words, expected)
+
+
+SCENES = {
+    "list.yaml": ("- walk", "expected nodes with `ros__parameters`, as in a parameter file of ROS"),
+    "broken.yaml": ("a: [", "is not YAML: while parsing"),
+    "event.yaml": (
+        "audience: {ros__parameters: {events: ['noon: push']}}",
+        "'noon: push' is not an event: write WHEN: WHAT, such as",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_mistakes_in_a_scenario_of_ones_own_are_one_sentence(name: str, tmp_path: Path) -> None:
+    text, expected = SCENES[name]
+    scenario = tmp_path / name
+    scenario.write_text(text)
+    refused(["--headless", "--scenario", str(scenario)], expected)
+
+
+MINE = """
+from gait_planner._gait_planner_base import GaitPlannerBase
+from humanoid_interfaces.msg import FootstepPlan
+
+
+class Mine(GaitPlannerBase):
+    def __init__(self, **options):
+        super().__init__(**options)
+        self.upcoming = FootstepPlan()
+
+    def on_footsteps_plan(self, message):
+        if message.steps != self.upcoming.steps:
+            message.plan_id = self.upcoming.plan_id + 1
+            self.upcoming = message
+
+    def on_gait_state(self, message): ...
+
+    def on_humanoid_cmd_vel(self, message): ...
+
+    def handle_clear(self, request, response):
+        self.on_footsteps_plan(FootstepPlan())
+        return response
+
+    def on_sign_of_life_timer(self):
+        self.publish_footsteps_upcoming(self.upcoming)
+
+    def on_diagnostics_timer(self): ...
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_real)])
+def test_somebodys_own_gait_planner_walks(transport: str, tmp_path: Path) -> None:
+    file, scenario = tmp_path / "mine.py", tmp_path / "short.yaml"
+    file.write_text(MINE)
+    scenario.write_text("high_level_task_manager: {ros__parameters: {tasks: [walk 0.5 0.1 0.3]}}")
+    words = ("--replace", f"gait_planner={file}", "--without", "teleop", "--transport", transport)
+    summary = demo("--scenario", str(scenario), *words)
+    assert (summary["outcome"], summary["falls"]) == ("done", "0")
+    assert float(summary["goal error"].split()[0]) < 60
+
+
+def test_a_second_robot_in_the_same_domain_is_refused() -> None:
+    with own_domain() as domain:
+        environment = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
+        command = [sys.executable, "-m", "ifgen", "demo", "--headless", "--idle"]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as first:
+            assert first.stdout is not None
+            try:
+                assert "stands, and waits" in first.stdout.readline()
+                second = subprocess.run(
+                    command, capture_output=True, text=True, timeout=60, env=environment, check=False
+                )
+            finally:
+                first.send_signal(signal.SIGINT)
+            assert first.wait(30) == 130
+    assert second.returncode == 1
+    assert second.stderr == (
+        f"error: another simulation runs in ROS domain {domain}: end it, or choose another domain, "
+        f"such as ROS_DOMAIN_ID={domain % 100 + 1}\n"
+    )
 
 
 def test_a_port_in_use_is_named() -> None:
@@ -141,6 +231,7 @@ def refused(words: list[str], expected: str) -> None:
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
 def test_on_a_terminal_log_lines_are_not_garbled_and_ctrl_c_exits_with_130() -> None:
     import pty

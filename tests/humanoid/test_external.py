@@ -75,6 +75,7 @@ def _error(folder: Path, model: str, joint_map: object) -> str:
     return text.replace(str(folder) + "/", "")
 
 
+@pytest.mark.slow
 def test_walks_under_other_names(tmp_path: Path) -> None:
     model = load_external(*_written(tmp_path, _bare(), _map()))
     assert abs(model.mass - 37.05) < 1e-6

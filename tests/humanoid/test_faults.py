@@ -54,8 +54,8 @@ def _both_feet_down_after(robot: Lockstep) -> float:
     ("node", "why"),
     [
         ("gait_planner", "gait_planner has been silent"),
-        ("state_estimator", "no odometry"),
-        ("whole_body_controller", "no good command"),
+        pytest.param("state_estimator", "no odometry", marks=pytest.mark.slow),
+        pytest.param("whole_body_controller", "no good command", marks=pytest.mark.slow),
     ],
 )
 def test_a_node_dies_in_the_middle_of_a_step(model: HumanoidModel, node: str, why: str) -> None:
@@ -179,6 +179,7 @@ def test_a_command_that_is_no_number_never_reaches_a_joint(model: HumanoidModel)
     assert not robot.fell
 
 
+@pytest.mark.slow
 def test_readings_that_are_no_numbers_are_left_out(model: HumanoidModel) -> None:
     robot = _walking(model, 3, 2.4)
     honest = robot.simulator.sensors

@@ -21,20 +21,23 @@ def _hashes(*options: dict[str, Any], hash_seed: int = 0) -> list[str]:
     return [run["hash"] for run in runs]
 
 
-@pytest.fixture(scope="module")
-def here() -> list[str]:
-    """Seed 1 twice and seed 2, in one process: a graph is built, played with, destroyed, and built again."""
-    return _hashes({"seed": 1}, {"seed": 1}, {"seed": 2})
-
-
-def test_a_graph_built_again_runs_the_same(here: list[str]) -> None:
-    first, again, other = here
+@pytest.mark.slow
+def test_a_graph_built_again_runs_the_same() -> None:
+    """In one process, a graph is built, played with, destroyed, and built again."""
+    first, again, other = _hashes({"seed": 1}, {"seed": 1}, {"seed": 2})
     assert first == again != other
 
 
-def test_another_process_runs_the_same(here: list[str]) -> None:
-    assert _hashes({"seed": 1}, hash_seed=77) == here[:1]
+def test_another_process_runs_the_same() -> None:
+    assert _hashes({"seed": 1}, hash_seed=77) == _hashes({"seed": 1})
 
 
-def test_nodes_in_two_processes_run_the_same(here: list[str]) -> None:
-    assert _hashes({"seed": 2, "split": True}) == here[2:]
+@pytest.mark.slow
+def test_nodes_in_four_processes_run_as_in_one() -> None:
+    one, four, again, other = _hashes(
+        {"seed": 1, "processes": 1},
+        {"seed": 1, "processes": 4},
+        {"seed": 1, "processes": 4},
+        {"seed": 2, "processes": 4},
+    )
+    assert one == four == again != other

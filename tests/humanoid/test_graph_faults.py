@@ -45,7 +45,14 @@ def run_inside(file: Path, folder: Path, *, slow: bool, limit: float) -> None:
     )
 
 
-LONG = {"test_goals", "test_parameters", "test_stop"}  # ten seconds each on two busy cores
+LONG = {
+    "test_user",
+    "test_dying",
+    "test_goals",
+    "test_parameters",
+    "test_stalling",
+    "test_stop",
+}  # ten seconds each on two busy cores
 SOME = [pytest.param(file, marks=pytest.mark.slow) if file.stem in LONG else file for file in FILES]
 
 
@@ -74,7 +81,7 @@ def test_more_faults(file: Path, tmp_path: Path) -> None:
         ("imu_fusion", "whole_body_controller: holding: no odometry from imu_fusion for 0."),
         (
             "whole_body_controller",
-            "humanoid_simulator: the servos hold the robot on their own: no good command for 0.0",
+            "joint_controller: the servos hold the robot on their own: no good command for 0.0",
         ),
         (
             "navigation_action_server",
@@ -85,7 +92,7 @@ def test_more_faults(file: Path, tmp_path: Path) -> None:
 def test_a_process_is_killed_on_real_rclpy(node: str, words: str) -> None:
     environment = {
         **os.environ,
-        "PYTHONPATH": str(ROOT / "examples"),
+        "PYTHONPATH": str(ROOT / "examples/humanoid"),
     }
     done = subprocess.run(
         [sys.executable, "-c", KILL, node],

@@ -10,6 +10,7 @@ import pytest
 from humanoid.data import SECOND, GaitState, JointStates, Leg, Mode, Stance, Support
 from humanoid.planning import dance
 from humanoid.planning.choreography import DANCES
+from humanoid.planning.events import Event, event_of
 from humanoid.planning.footsteps import (
     PlanStatus,
     StepLimits,
@@ -18,7 +19,8 @@ from humanoid.planning.footsteps import (
     shorter,
 )
 from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome
-from humanoid.planning.task_manager import Task, TaskManager
+from humanoid.planning.task_manager import TaskManager
+from humanoid.planning.tasks import Task, task_of, words_of
 from humanoid.planning.teleop import Teleop, VelocityLimits
 from humanoid.robot.ground import Ground, Obstacle
 from humanoid.robot.model import HumanoidModel
@@ -270,7 +272,7 @@ def test_walking_empties_the_battery() -> None:
 
 
 def test_tasks_one_after_the_other() -> None:
-    walk, dancing = Task("walk", goal=(1.0, 0.0, 0.0)), Task("dance", name="wave", tries=1)
+    walk, dancing = Task("walk", place=(1.0, 0.0, 0.0)), Task("dance", name="wave", tries=1)
     manager = TaskManager([walk, dancing])
     assert manager.update().start is walk
     assert manager.update().start is None
@@ -299,3 +301,55 @@ def test_tasks_end_with_the_battery_or_a_stop() -> None:
     urgent.finished(False, "canceled")
     assert urgent.idle
     assert urgent.done[0][2] == "canceled"
+
+
+@pytest.mark.parametrize(
+    ("words", "task"),
+    [
+        ("walk 1.0 0.5 1.57", Task("walk", place=(1.0, 0.5, 1.57))),
+        ("walk 0 0 -0.1 for 4", Task("walk", place=(0.0, 0.0, -0.1), seconds=4.0)),
+        ("dance wave", Task("dance", name="wave")),
+        ("dance waltz 12", Task("dance", name="waltz", beats=12)),
+        ("look 2 0.1 1.4", Task("look", place=(2.0, 0.1, 1.4), seconds=3.0)),
+        ("point 2 0.1 1.4 for 0.7", Task("point", place=(2.0, 0.1, 1.4), seconds=0.7)),
+        ("wait 0.3", Task("wait", seconds=0.3)),
+    ],
+)
+def test_tasks_in_words(words: str, task: Task) -> None:
+    assert task_of(words) == task
+    assert task_of(words_of(task)) == task
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["", "fly", "walk", "walk 1 2", "walk 1 2 nan", "walk 1 2 3 until 4", "walk 1 2 3 for -1", "dance", "dance wave x",
+     "dance wave -1", "dance wave 1 2", "wait", "wait inf", "look 1 2 x", "point 1 2 3 4"],
+)  # fmt: skip
+def test_what_is_no_task_is_said(words: str) -> None:
+    with pytest.raises(ValueError, match="is not a task: say `walk X Y YAW`"):
+        task_of(words)
+
+
+@pytest.mark.parametrize(
+    ("text", "event"),
+    [
+        ("12.5: press", Event("press", delay=12.5)),
+        ("task 2 + 3.1: push 4 180", Event("push", task=2, delay=3.1, numbers=(4.0, 180.0))),
+        ("after task 1: say walk 0.6 0.3 0", Event("say", task=1, after=True, words="walk 0.6 0.3 0")),
+        ("task 3: joystick 0.5 0 -1 for 2", Event("joystick", task=3, numbers=(0.5, 0.0, -1.0, 2.0))),
+        ("0: move box 1.0 -0.2", Event("move", words="box", numbers=(1.0, -0.2))),
+        ("after task 2+1:release", Event("release", task=2, after=True, delay=1.0)),
+    ],
+)
+def test_events_in_words(text: str, event: Event) -> None:
+    assert event_of(text) == event
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "press", "now: press", "12: push 4", "12: push 4 x", "task: press", "task 1 + x: press", "nan: press",
+     "1: say", "1: joystick 1 0 0", "1: move box 1", "1: dance", "before task 1: press"],
+)  # fmt: skip
+def test_what_is_no_event_is_said(text: str) -> None:
+    with pytest.raises(ValueError, match="is not an event: write WHEN: WHAT, such as"):
+        event_of(text)

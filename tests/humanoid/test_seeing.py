@@ -23,7 +23,7 @@ from humanoid.simulation import rendering
 from humanoid.simulation.sim import Simulator
 from humanoid.spatial import Array
 
-EXAMPLES = str(Path(__file__).parents[2] / "examples")
+EXAMPLES = str(Path(__file__).parents[2] / "examples/humanoid")
 FEET = [np.array([0.0, side, 0.0]) for side in (0.09, -0.09)]
 
 

@@ -76,13 +76,21 @@ def test_walks_to_a_goal(model: HumanoidModel) -> None:
     assert not robot.fell
 
 
-@pytest.mark.parametrize("goal", [(-0.4, 0.1, 0.0), (0.0, 0.3, 0.0), (-1.0, 0.0, math.pi)])
+@pytest.mark.parametrize(
+    "goal",
+    [
+        (-0.4, 0.1, 0.0),
+        pytest.param((0.0, 0.3, 0.0), marks=pytest.mark.slow),
+        pytest.param((-1.0, 0.0, math.pi), marks=pytest.mark.slow),
+    ],
+)
 def test_walks_backwards_sideways_and_turns(model: HumanoidModel, goal: tuple[float, float, float]) -> None:
     robot = Lockstep(model, seed=3, noise=NOISE)
     assert robot.go_to(goal) < 0.06
     assert not robot.fell
 
 
+@pytest.mark.slow
 def test_cancel_joins_the_feet(model: HumanoidModel) -> None:
     random = np.random.default_rng(0)
     for seed in range(6):
@@ -129,7 +137,8 @@ def _pushed(
 
 @pytest.mark.parametrize(
     ("when", "direction", "momentum"),
-    [(2.75, 90, 6), (2.85, 110, 6), (3.1, 270, 6), (3.6, 0, 6), (3.65, 290, 6)]
+    [(2.75, 90, 6), (2.85, 110, 6)]
+    + [pytest.param(*each, 6, marks=pytest.mark.slow) for each in [(3.1, 270), (3.6, 0), (3.65, 290)]]
     + [
         pytest.param(2.8 + 0.2 * phase, 45 * eighth, 5, marks=pytest.mark.slow)
         for phase in range(8)
@@ -200,6 +209,7 @@ def test_random_goals_with_noise_and_pushes(model: HumanoidModel) -> None:
     assert trial.reached == 20
 
 
+@pytest.mark.slow
 def test_a_push_to_the_outside_hurries_the_swing(model: HumanoidModel) -> None:
     """No step can catch a robot that falls over its stance foot; the other foot must come down sooner."""
 
@@ -266,8 +276,9 @@ print(robot.simulator.hash())
 """
 
 
+@pytest.mark.slow
 def test_equal_seeds_make_equal_runs(model: HumanoidModel) -> None:
-    examples = str(Path(__file__).parents[2] / "examples")
+    examples = str(Path(__file__).parents[2] / "examples/humanoid")
 
     def other_process(seed: int) -> str:
         command = [sys.executable, "-c", _REPEAT, examples, str(seed)]

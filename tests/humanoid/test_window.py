@@ -222,6 +222,7 @@ def test_without_glfw_one_sentence_says_how_to_get_it() -> None:
         assert demo.warning().startswith(f"warning: no window: GLFW is missing: {add_extra('sim')};")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere there is always a screen")
 def test_without_a_display_no_message_mentions_a_window() -> None:
     with Demo("") as demo:

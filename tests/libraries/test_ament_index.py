@@ -143,8 +143,12 @@ for name in ("my_pkg", "folder_of_another", "broken"):
 print(repr(ament.get_package_share_path("my_pkg")))
 print(tried(ament.get_package_prefix, "my_pkg"))
 """
-    nothing = "OSError: Environment variable 'AMENT_PREFIX_PATH' is not set or empty"
-    expected = [str(source), nothing, nothing, repr(source), nothing]
+    why = "not found: Environment variable 'AMENT_PREFIX_PATH' is not set or empty"
+    mine, others, broken = (
+        f"PackageNotFoundError: \"package '{name}' {why}\""
+        for name in ("my_pkg", "folder_of_another", "broken")
+    )
+    expected = [str(source), others, broken, repr(source), mine]
     assert without_ros(tree / "none", calls, folder=source / "my_pkg") == expected  # beside the program
     assert without_ros(tree / "none", calls, source, folder=tree) == expected  # on the path
     other = tree / "src/other"

@@ -6,7 +6,9 @@ import importlib.util
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,16 +17,10 @@ from tests.real_rclpy import again_if_crashed
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 TIME_LIMIT = 110  # [s] for one of them
-TRANSPORTS = [
-    "local",
-    pytest.param(
-        "rclpy",
-        marks=pytest.mark.skipif(
-            importlib.util.find_spec("rclpy") is None,
-            reason="the ROS wheels are not installed (Linux x86_64 only)",
-        ),
-    ),
-]
+needs_rclpy = pytest.mark.skipif(
+    importlib.util.find_spec("rclpy") is None, reason="the ROS wheels are not installed (Linux x86_64 only)"
+)
+TRANSPORTS = ["local", pytest.param("rclpy", marks=needs_rclpy)]
 
 
 def run(*words: str | Path, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -42,8 +38,15 @@ def run(*words: str | Path, **variables: str) -> subprocess.CompletedProcess[str
     )
 
 
-@pytest.mark.parametrize("transport", TRANSPORTS)
-@pytest.mark.parametrize("tests", sorted((HERE / "inside").glob("[!_]*")), ids=lambda path: path.stem)
+def _combinations() -> Iterator[Any]:
+    """Each file and folder on each transport; on real rclpy, the longest takes its time."""
+    for tests in sorted((HERE / "inside").glob("[!_]*")):
+        yield pytest.param(tests, "local", id=f"{tests.stem}-local")
+        slow = [pytest.mark.slow] if tests.is_dir() else []
+        yield pytest.param(tests, "rclpy", id=f"{tests.stem}-rclpy", marks=[needs_rclpy, *slow])
+
+
+@pytest.mark.parametrize(("tests", "transport"), _combinations())
 def test_inside(tests: Path, transport: str, tmp_path: Path) -> None:
     """Every test in the file or folder passes."""
     words = ("-q", "-p", "no:cacheprovider", "--timeout=60", "--transport", transport, tests)

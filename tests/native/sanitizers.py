@@ -16,7 +16,7 @@ SIGNS = ("AddressSanitizer", "runtime error")
 def gcc(*arguments: str | Path) -> str:
     """What gcc prints, which must not fail."""
     ran = subprocess.run(
-        ["gcc", *map(str, arguments)], capture_output=True, text=True, timeout=60, check=False
+        ["gcc", *map(str, arguments)], capture_output=True, text=True, timeout=200, check=False
     )
     assert ran.returncode == 0, ran.stderr
     return ran.stdout

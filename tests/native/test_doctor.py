@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 from ifgen.cli import doctor
+from ifgen_pytest.domains import own_domain
 from ifgen_runtime.codec import choice
 from ifgen_runtime.installation import add_extra, add_native
+
+from tests.running.terminals import Terminal
 
 from .support import DISTRIBUTION, needs_rclpy, run_python
 
@@ -152,3 +156,67 @@ def test_no_rclpy(monkeypatch: pytest.MonkeyPatch) -> None:
     *_, last = doctor.examine()
     assert (last.subject, last.found) == ("real rclpy", "not found")
     assert (add_extra("ros") in (last.advice or "")) == (sys.platform == "linux")
+
+
+@pytest.mark.parametrize(
+    ("environment", "words"),
+    [
+        (
+            {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"},
+            "those of this user on this machine, in domain 97: ",
+        ),
+        ({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}, "not reached: ROS_AUTOMATIC_DISCOVERY_RANGE is OFF"),
+        pytest.param(
+            {"ROS_STATIC_PEERS": "127.0.0.1:9"},
+            "no nodes now (Zenoh 1.10.2) -> other processes are not reached until",
+            marks=pytest.mark.slow,
+        ),
+        ({"ZENOH_SESSION_CONFIG_URI": "no.json5"}, "no.json5 cannot be used: No such file"),
+        pytest.param({"ROS_DOMAIN_ID": "x"}, "not reached (Zenoh 1.10.2) -> ", marks=pytest.mark.slow),
+    ],
+    ids=["here", "off", "router", "file", "domain"],
+)
+def test_who_is_reached_and_why_not(
+    environment: dict[str, str], words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("zenoh")
+    for name, value in ({"ROS_DOMAIN_ID": "97"} | environment).items():
+        monkeypatch.setenv(name, value)
+    found = doctor._other_processes()
+    said = f"{found.found} -> {found.advice}".replace(version("eclipse-zenoh"), "1.10.2")
+    assert words in said
+
+
+@pytest.mark.slow
+def test_nodes_of_others_are_counted(tmp_path: Path) -> None:
+    pytest.importorskip("zenoh")
+    program = tmp_path / "waits.py"
+    program.write_text(
+        "import rclpy\nrclpy.init()\nnodes = [rclpy.create_node(name) for name in ('a', 'b')]\n"
+        "print('ready', flush=True)\ntry:\n    rclpy.spin(nodes[0])\nexcept KeyboardInterrupt:\n    pass\n"
+    )
+    with own_domain() as domain:
+        reached = {
+            **os.environ,
+            "ROS_DOMAIN_ID": str(domain),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        }
+        terminal = Terminal(reached, str(program))
+        try:
+            terminal.until("ready")
+            asked = subprocess.run(
+                [
+                    sys.executable,
+                    "-c",
+                    "from ifgen.cli.running import other_processes as o; print(o.look()[0])",
+                ],
+                env=reached,
+                capture_output=True,
+                text=True,
+                timeout=60,
+                check=True,
+            )
+            assert terminal.end() == 0
+        finally:
+            terminal.process.kill()
+    assert asked.stdout == f"those of this user on this machine, in domain {domain}: 2 nodes now\n"

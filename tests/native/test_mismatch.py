@@ -31,7 +31,7 @@ def meet(policy: str) -> tuple[dict[str, Any], str]:
     assert (other.returncode, output) == (0, ""), errors
     assert "Traceback" not in ran.stderr + errors, ran.stderr + errors
     seen: dict[str, Any] = json.loads(ran.stdout)
-    assert seen["complete"] == [True, True], seen
+    assert seen["complete"] == [True, True], ran.stdout
     assert all(message == GOOD for message in seen["later"]), "garbage after the other publisher had left"
     return seen, ran.stderr
 

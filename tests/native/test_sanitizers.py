@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import zlib
 from pathlib import Path
 
 import pytest
@@ -49,6 +50,14 @@ def test_nothing_is_read_or_written_where_it_should_not_be(program: str, sanitiz
     ran = run_python(str(PROGRAMS / f"{program}.py"), environment=sanitized, limit=100)
     assert ran.returncode == 0, ran.stderr
     assert ran.stdout
+    assert not any(sign in ran.stderr for sign in SIGNS), ran.stderr
+
+
+@pytest.mark.slow
+def test_checksums_read_what_they_are_given(sanitized: dict[str, str]) -> None:
+    program = "from ifgen_native._native import crc32\nfor n in range(300): crc32(bytearray(n))\nprint(crc32(bytearray(10**6)))"
+    ran = run_python("-c", program, environment=sanitized)
+    assert ran.stdout == f"{zlib.crc32(bytes(10**6))}\n", ran.stderr
     assert not any(sign in ran.stderr for sign in SIGNS), ran.stderr
 
 

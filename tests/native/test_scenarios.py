@@ -27,6 +27,7 @@ _SPEC.loader.exec_module(harness)
 PACKAGES = ("geometry_msgs", "sensor_msgs", "std_msgs", "std_srvs", "test_msgs")
 _USES_THEM = re.compile(rf"^ *from ({'|'.join(PACKAGES)})\.", re.MULTILINE)
 SCENARIOS = [path for path in sorted(harness.SCENARIOS.glob("*.py")) if _USES_THEM.search(path.read_text())]
+SOME = {"action_goals", "comm_services", "comm_types_and_waiting", "node_parameters"}
 
 _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 # An invalid goal identifier fails when it is encoded, with the codec's error, not when it is first used.
@@ -53,7 +54,11 @@ def test_the_classes_are_the_never_compiled_ones(packages: Path, tmp_path: Path)
 
 
 @pytest.mark.timeout(5 * harness.TIME_LIMIT)
-@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "scenario",
+    [path if path.stem in SOME else pytest.param(path, marks=pytest.mark.slow) for path in SCENARIOS],
+    ids=lambda path: path.stem,
+)
 def test_prints_the_same(scenario: Path, packages: Path) -> None:
     expected = harness.run(scenario, ours=DISTRIBUTION == "jazzy")
     if DISTRIBUTION == "jazzy":

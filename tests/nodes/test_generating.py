@@ -119,6 +119,34 @@ def test_package_xml(workspace: Path) -> None:
     assert """description='Arms & "hands"',""" in Path("generated/robot/setup.py").read_text()
 
 
+def test_dependencies_of_the_package_xml_stay(workspace: Path) -> None:
+    """A node imports more than messages: what its package.xml declares is what colcon builds, and pip installs."""
+    (WS / "robot/package.xml").write_text(
+        """<package format="3"><name>robot</name><version>1.2.3</version>
+        <buildtool_depend>ament_python</buildtool_depend> <build_depend>rosidl_default_generators</build_depend>
+        <depend>rclpy</depend> <depend>std_msgs</depend>
+        <depend>arm_kinematics</depend>
+        <exec_depend condition="$ROS_VERSION &gt;= 2">python3-numpy</exec_depend>
+        <test_depend>arm_scenes</test_depend></package>"""
+    )
+    pyproject = (
+        '[tool.ifgen.requirements]\narm_kinematics = "arm-kinematics>=0.3"\narm_scenes = "arm-scenes"\n'
+    )
+    Path("pyproject.toml").write_text(f'[tool.ifgen]\npaths = ["{WS}"]\n{pyproject}')
+    assert main.main(["generate"]) == 0
+    lines = [line.strip() for line in Path("generated/robot/package.xml").read_text().splitlines()]
+    assert lines.count("<depend>rclpy</depend>") == lines.count("<depend>std_msgs</depend>") == 1
+    further = lines[lines.index("<depend>arm_kinematics</depend>") :]
+    assert further[:3] == [
+        "<depend>arm_kinematics</depend>",
+        '<exec_depend condition="$ROS_VERSION &gt;= 2">python3-numpy</exec_depend>',
+        "<test_depend>arm_scenes</test_depend>",
+    ]
+    assert not any("rosidl_default_generators" in line or "buildtool" in line for line in lines)
+    setup = Path("generated/robot/setup.py").read_text()
+    assert 'install_requires=["setuptools", "arm-kinematics>=0.3"],' in setup
+
+
 def test_the_users_module_is_written_once(ears: Path) -> None:
     ears.write_text("# mine\n" + ears.read_text())
     mine = ears.read_text()

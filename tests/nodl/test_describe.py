@@ -140,6 +140,7 @@ def test_one_of_several_nodes_and_files(tmp_path: Path, transport: str) -> None:
     assert "--force" in again.stderr
 
 
+@pytest.mark.slow
 def test_no_node(tmp_path: Path) -> None:
     nothing = run(tmp_path, "--transport", "local")
     assert nothing.returncode == 2

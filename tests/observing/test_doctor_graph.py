@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ifgen.dynamic.describing import Endpoint
+from ifgen.dynamic.asking import Endpoint
 from ifgen.observing import definitions_observer
 from ifgen.observing.definitions_seen import Disagreement, User, Version
 from ifgen_pytest.domains import own_domain

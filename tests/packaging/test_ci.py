@@ -112,6 +112,7 @@ def test_pre_commit_takes_what_is_written(project: Path) -> None:
     run(*pre_commit, "validate-config", cwd=project)
 
 
+@pytest.mark.slow
 def test_hooks(project: Path) -> None:
     assert hook("ifgen-check", project).returncode == 0
     done = hook("ifgen-generate", project)
@@ -128,6 +129,7 @@ def test_hooks(project: Path) -> None:
     assert "removed generated/demo_msgs" in hook("ifgen-generate", project).stdout
 
 
+@pytest.mark.slow
 def test_the_action(project: Path) -> None:
     """All of its steps except the first two, which prepare the machine."""
 

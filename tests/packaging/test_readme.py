@@ -1,4 +1,4 @@
-"""The files and commands of the README and of docs/numpy.md, run in order: the output that they show is what users get.
+"""The files and commands of the README and of pages in docs, run in order: the output that they show is what users get.
 
 `IFGEN_RECORD=1 pytest tests/packaging/test_readme.py` writes the present output into them.
 """
@@ -16,10 +16,14 @@ import pytest
 
 from .readme import README, replayed
 
-PAGES = {page.name: page for page in (README, README.parent / "docs" / "numpy.md")}
+_DOCS = README.parent / "docs"
+PAGES = {page.name: page for page in (README, _DOCS / "numpy.md", _DOCS / "tools.md")}
+_SLOW = {"tools.md"}  # a process for each of its many commands
 
 
-@pytest.mark.parametrize("name", PAGES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in _SLOW else []) for name in PAGES]
+)
 def test_commands_and_outputs(tmp_path: Path, name: str) -> None:
     shown = PAGES[name].read_text()
     found = replayed(tmp_path, f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}", shown)

@@ -194,7 +194,7 @@ def test_what_is_the_users_wins_over_our_examples(
 def test_nodes_of_our_demo_are_there_for_whoever_asks_for_the_demo() -> None:
     find = "import importlib.util as u\nprint([bool(u.find_spec(n)) for n in ('teleop._teleop_base', 'humanoid_interfaces')])"
     assert run(f"ifgen.activate('local')\n{find}") == "[False, True]"
-    examples = CODE.parent / "examples"
+    examples = CODE.parent / "examples/humanoid"
     assert run(f"ifgen.activate('local')\n{find}", examples) == "[True, True]"
 
 

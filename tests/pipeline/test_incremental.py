@@ -131,7 +131,11 @@ def check_against_a_first_run(custom: Customization | None = None) -> None:
     assert left <= {"robot/test/test_arm.py"}
 
 
-@pytest.mark.parametrize("what", ["int8 extra\n", "# A comment at the end.\n"], ids=["field", "comment"])
+@pytest.mark.parametrize(
+    "what",
+    ["int8 extra\n", pytest.param("# A comment at the end.\n", marks=pytest.mark.slow)],
+    ids=["field", "comment"],
+)
 def test_every_interface_edited_in_turn(rendered: list[str], workspace: Path, what: str) -> None:
     """Only that interface is rendered, those that contain it, and the files that their packages share."""
     ifgen.generate("ws", output="out")

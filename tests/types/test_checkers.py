@@ -119,7 +119,7 @@ def typings(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
 
 
 @pytest.mark.parametrize("checker", [mypy, pyright])
-@pytest.mark.parametrize("where", ["sources", "stubs"])
+@pytest.mark.parametrize("where", ["sources", pytest.param("stubs", marks=pytest.mark.slow)])
 def test_what_strict_checkers_refuse(
     checker: Callable[[tuple[Path, ...], Path], Found],
     where: str,

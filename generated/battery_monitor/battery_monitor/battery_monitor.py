@@ -1,59 +1,61 @@
-"""The node battery_monitor: written once by ifgen, yours from then on.
-
-`ifgen run -m battery_monitor.battery_monitor` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node battery_monitor: reports how long the battery will last."""
 
 from __future__ import annotations
 
-import sys
+import math
 from typing import Any
 
-import rclpy
+from humanoid.ros import messages
+from humanoid.ros.running import run
+from humanoid.simulation.battery import BatteryLimits, BatteryReading, Level
+from humanoid.simulation.battery import BatteryMonitor as Monitor
 from humanoid_interfaces.msg import BatteryStatus
-from rclpy.executors import ExternalShutdownException
 from sensor_msgs.msg import BatteryState
+from std_srvs.srv import SetBool
 
 from battery_monitor._battery_monitor_base import BatteryMonitorBase
 from battery_monitor._battery_monitor_parameters import ParametersError
 
 
 class BatteryMonitor(BatteryMonitorBase):
-    """Watches the battery, estimates how long it will last, and calls for an emergency stop before it is
-    empty. A robot without power falls.
-    """
+    """Reports once a second, and requests an emergency stop once, when the battery becomes critical."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
+        self._monitor = Monitor(BatteryLimits(low=self.parameters.low, critical=self.parameters.critical))
+        self._called = False
 
     def on_battery_state(self, message: BatteryState) -> None:
-        """Take a message from `/battery_state`.
-
-        Voltage [V] and current [A] as measured
-        """
-        self.get_logger().debug("message on /battery_state")
+        """Take a reading."""
+        stamp = messages.nanoseconds(message.header.stamp)
+        self._monitor.take(
+            BatteryReading(stamp, message.voltage, message.current, message.percentage, message.temperature)
+        )
 
     def on_report_timer(self) -> None:
-        """Called every 1 s."""
-        self.publish_battery(BatteryStatus())
+        """Publish the level."""
+        now = self.get_clock().now().nanoseconds
+        verdict = self._monitor.verdict(now)
+        status = BatteryStatus(
+            header=messages.header(now, ""),
+            level=int(verdict.level),
+            charging=verdict.charging,
+            charge=math.nan,
+            time_left=messages.duration_of(verdict.time_left),
+        )
+        if (reading := verdict.reading) is not None:
+            status.charge, status.voltage = reading.charge, reading.voltage
+            status.current, status.temperature = reading.current, reading.temperature
+        self.publish_battery(status)
+        critical = verdict.level is Level.CRITICAL
+        if critical and not self._called and self.emergency_stop_set_client.service_is_ready():
+            self.call_emergency_stop_set(SetBool.Request(data=True))
+        self._called = critical
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = BatteryMonitor()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"battery_monitor: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(BatteryMonitor, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -1,73 +1,83 @@
-"""The node emergency_stop: written once by ifgen, yours from then on.
-
-`ifgen run -m emergency_stop.emergency_stop` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node emergency_stop: stops the robot in an emergency."""
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
-import rclpy
+from humanoid.data import Cause, Mode
+from humanoid.ros import messages
+from humanoid.ros.running import run
+from humanoid.simulation.safety import EmergencyStopLatch
 from humanoid_interfaces.msg import BatteryStatus, GaitState
-from humanoid_interfaces.msg import EmergencyStop as humanoid_interfaces_msg_EmergencyStop
-from rclpy.executors import ExternalShutdownException
 from std_srvs.srv import SetBool
 
 from emergency_stop._emergency_stop_base import EmergencyStopBase
 from emergency_stop._emergency_stop_parameters import ParametersError
 
-# fmt: off
+_OPERATOR, _FALL, _BATTERY, _BEFORE = "operator", "fall", "battery", "emergency_stop"
 
 
 class EmergencyStop(EmergencyStopBase):
-    """Holds the emergency stop. Any node can set it, but only a person should release it. The node sets it
-    without being asked when the robot has fallen or the battery is critical.
-    """
+    """A latched stop: it lasts until somebody releases it, and cannot be released while its cause lasts."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
-        self.publish_emergency_stop(humanoid_interfaces_msg_EmergencyStop())
+        self._latch = EmergencyStopLatch()
+        self._told = False
 
     def on_gait_state(self, message: GaitState) -> None:
-        """Take a message from `/gait_state`.
-
-        Whether the robot has fallen, or was stopped before this node started
-        """
-        self.get_logger().debug("message on /gait_state")
+        """Stop if the robot has fallen, or if it was stopped before this node started."""
+        if not self._told:
+            self._begin(message)
+        if message.mode == Mode.FALLEN and self.parameters.stop_on_fall:
+            self._request(_FALL, Cause.FALL, "the robot has fallen")
+        else:
+            self._latch.withdraw(_FALL)
 
     def on_battery(self, message: BatteryStatus) -> None:
-        """Take a message from `/battery`.
-
-        Whether the battery is critical
-        """
-        self.get_logger().debug("message on /battery")
+        """Stop if the battery is nearly empty."""
+        critical = message.level == BatteryStatus.LEVEL_CRITICAL
+        if critical and self.parameters.stop_on_critical_battery:
+            self._request(_BATTERY, Cause.BATTERY, f"the battery is at {message.charge:.0%}")
+        else:
+            self._latch.withdraw(_BATTERY)
 
     def handle_set(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        """Answer a request to `~/set`.
-
-        Press the button, or release it
-        """
+        """Press the button, or release it."""
+        if request.data:
+            self._request(_OPERATOR, Cause.OPERATOR, "the button was pressed")
+            response.success = True
+            return response
+        self._latch.withdraw(_OPERATOR)
+        response.success, response.message = self._latch.reset(self._now())
+        if response.success:
+            self.publish_emergency_stop(messages.emergency_stop(self._latch.status))
         return response
+
+    def _begin(self, message: GaitState) -> None:
+        """Publish whether the stop is active: a restart of this node must not lift an earlier stop."""
+        self._told = True
+        if message.mode == Mode.EMERGENCY_STOP and not self._latch.status.active:
+            self._request(
+                _BEFORE, Cause.UNKNOWN, f"was active before this node started: {message.reason}"[:255]
+            )
+            self._latch.withdraw(_BEFORE)  # nobody requests it any longer, but somebody has to reset it
+        else:
+            self.publish_emergency_stop(messages.emergency_stop(self._latch.status))
+
+    def _request(self, source: str, cause: Cause, reason: str) -> None:
+        status = self._latch.request(source, cause, reason, self._now())
+        if status is not None:
+            self.publish_emergency_stop(messages.emergency_stop(status))
+            self.get_logger().error(f"emergency stop: {reason}")
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = EmergencyStop()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"emergency_stop: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(EmergencyStop, args, ParametersError)
 
 
 if __name__ == "__main__":

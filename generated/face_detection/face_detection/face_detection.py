@@ -1,75 +1,102 @@
-"""The node face_detection: written once by ifgen, yours from then on.
-
-`ifgen run -m face_detection.face_detection` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node face_detection: finds faces in the images of the head camera."""
 
 from __future__ import annotations
 
-import sys
+import math
 from typing import Any
 
-import rclpy
-from humanoid_interfaces.msg import DetectedObjectArray
+import numpy as np
+from geometry_msgs.msg import Pose, Vector3
+from humanoid.ros import messages
+from humanoid.ros.running import run
+from humanoid.sensing.face_detection import LABEL, Detection, detect
+from humanoid_interfaces.msg import DetectedObject, DetectedObjectArray
 from humanoid_interfaces.srv import DetectObjects
-from rclpy.executors import ExternalShutdownException
-from sensor_msgs.msg import CameraInfo, Image
+from sensor_msgs.msg import CameraInfo, Image, RegionOfInterest
+from std_msgs.msg import Header
 
 from face_detection._face_detection_base import FaceDetectionBase
 from face_detection._face_detection_parameters import ParametersError
 
+_PLANES = {"rgb8": 3, "bgr8": 3, "mono8": 1}
+
 
 class FaceDetection(FaceDetectionBase):
-    """Finds faces, and markers that stand for faces, in the images of the head camera. It works on the
-    latest image only: an image that arrives during a detection replaces those before it.
-    """
+    """Examines every image as it arrives; there are five per second."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
-        self.publish_face_detection_detections(DetectedObjectArray())
-
-    def on_head_camera_image_raw(self, message: Image) -> None:
-        """Take a message from `/head_camera/image_raw`.
-
-        The image
-        """
-        self.get_logger().debug("message on /head_camera/image_raw")
+        self._fovy = 0.0  # degrees; not known before a calibration arrives
+        self._latest: DetectedObjectArray | None = None
 
     def on_head_camera_camera_info(self, message: CameraInfo) -> None:
-        """Take a message from `/head_camera/camera_info`.
+        """Take the field of view."""
+        if message.k[4] > 0:
+            self._fovy = math.degrees(2 * math.atan2(message.height / 2, message.k[4]))
 
-        The calibration of the camera
-        """
-        self.get_logger().debug("message on /head_camera/camera_info")
+    def on_head_camera_image_raw(self, message: Image) -> None:
+        """Look for faces."""
+        planes = _PLANES.get(message.encoding)
+        if planes is None or len(message.data) != message.height * message.step:
+            text = f"an image with encoding '{message.encoding}' cannot be read: send rgb8, bgr8 or mono8"
+            self.get_logger().warning(text, throttle_duration_sec=5.0)
+            return
+        if not self._fovy or LABEL not in self.parameters.labels:
+            return
+        rows = np.frombuffer(message.data, dtype=np.uint8).reshape(message.height, message.step)
+        picture = rows[:, : message.width * planes].reshape(message.height, message.width, planes)
+        if message.encoding == "bgr8":
+            picture = picture[:, :, ::-1]
+        elif planes == 1:
+            picture = np.repeat(picture, 3, axis=2)
+        found = [d for d in detect(picture, self._fovy) if d.confidence >= self.parameters.min_confidence]
+        objects = [_object(detection) for detection in found[: self.parameters.max_detections]]
+        self._latest = DetectedObjectArray(header=message.header, objects=objects)
+        self.publish_face_detection_detections(self._latest)
 
     def handle_detect(
-        self,
-        request: DetectObjects.Request,
-        response: DetectObjects.Response,
+        self, request: DetectObjects.Request, response: DetectObjects.Response
     ) -> DetectObjects.Response:
-        """Answer a request to `~/detect`.
-
-        Detect objects in the latest image
-        """
+        """Report what the latest image shows."""
+        unknown = [label for label in request.labels if label != LABEL]
+        latest = self._latest
+        if unknown:
+            response.status = DetectObjects.Response.STATUS_UNKNOWN_LABEL
+            response.message = f"I know '{LABEL}', not '{unknown[0]}'"
+        elif latest is None or self._is_old(latest.header, messages.nanoseconds(request.max_age)):
+            response.status = DetectObjects.Response.STATUS_NO_IMAGE
+            response.message = "there is no image" if latest is None else "the latest image is too old"
+        else:
+            objects = [o for o in latest.objects if o.confidence >= request.min_confidence]
+            if request.max_objects:
+                objects = objects[: request.max_objects]
+            response.status = DetectObjects.Response.STATUS_DONE
+            response.detections = DetectedObjectArray(header=latest.header, objects=objects)
         return response
+
+    def _is_old(self, header: Header, max_age: int) -> bool:
+        age = self.get_clock().now().nanoseconds - messages.nanoseconds(header.stamp)
+        return bool(max_age and age > max_age)
+
+
+def _object(detection: Detection) -> DetectedObject:
+    left, top, width, height = detection.region
+    x, y, z = detection.position
+    return DetectedObject(
+        label=detection.label,
+        confidence=detection.confidence,
+        region=RegionOfInterest(
+            x_offset=max(left, 0), y_offset=max(top, 0), width=width, height=height, do_rectify=False
+        ),
+        has_pose=True,
+        pose=Pose(position=messages.point(x, y, z)),
+        size=Vector3(x=detection.size, y=detection.size),
+    )
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = FaceDetection()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"face_detection: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(FaceDetection, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -1,55 +1,83 @@
-"""The node footstep_generation_server: written once by ifgen, yours from then on.
-
-`ifgen run -m footstep_generation_server.footstep_generation_server` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node footstep_generation_server: plans footsteps, or returns the reason why there are none."""
 
 from __future__ import annotations
 
-import sys
-from typing import Any
+import math
+from dataclasses import replace
 
-import rclpy
+from humanoid import data
+from humanoid.planning.footsteps import PlanStatus, StepLimits, plan_footsteps, shorter
+from humanoid.robot.scene import GROUND
+from humanoid.ros import messages
+from humanoid.ros.running import run
 from humanoid_interfaces.srv import PlanFootsteps
-from rclpy.executors import ExternalShutdownException
 
 from footstep_generation_server._footstep_generation_server_base import FootstepGenerationServerBase
 from footstep_generation_server._footstep_generation_server_parameters import ParametersError
 
+_FRAMES = ("", "odom")
+
 
 class FootstepGenerationServer(FootstepGenerationServerBase):
-    """Returns the footsteps that lead from a stance to a goal, or the reason why there are none. It moves
-    nothing.
-    """
-
-    def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
-        super().__init__(**options)
+    """Answers requests with plans; it moves nothing."""
 
     def handle_plan_footsteps(
-        self,
-        request: PlanFootsteps.Request,
-        response: PlanFootsteps.Response,
+        self, request: PlanFootsteps.Request, response: PlanFootsteps.Response
     ) -> PlanFootsteps.Response:
-        """Answer a request to `/plan_footsteps`."""
+        """Plan from the stance of the request."""
+        for what, frame in (
+            ("goal", request.goal.header.frame_id),
+            ("stance", request.start.header.frame_id),
+        ):
+            if frame not in _FRAMES:
+                response.status = int(PlanStatus.UNKNOWN_FRAME)
+                response.message = f"the {what} is in '{frame}'; I plan in odom"[:255]
+                return response
+        if not 0 <= request.max_step_length < math.inf:
+            response.status = int(PlanStatus.INVALID_REQUEST)
+            response.message = (
+                f"max_step_length is {request.max_step_length:g} m; it must be finite, 0 or more"
+            )
+            return response
+        first_leg = None
+        if request.first_leg:
+            if request.first_leg not in (data.Leg.LEFT, data.Leg.RIGHT):
+                response.status = int(PlanStatus.INVALID_REQUEST)
+                response.message = f"there is no leg {request.first_leg}"
+                return response
+            first_leg = data.Leg(request.first_leg)
+        x, y, yaw = (float(part) for part in messages.planar(request.goal.pose))
+        result = plan_footsteps(
+            messages.read_stance(request.start),
+            (x, y, yaw),
+            limits=self._limits(request),
+            ground=replace(GROUND, half_size=self.parameters.distance_max),
+            first_leg=first_leg,
+        )
+        response.status = int(result.status)
+        response.message = result.message[:255]
+        response.plan = messages.footstep_plan(result.plan, self.get_clock().now().nanoseconds)
         return response
+
+    def _limits(self, request: PlanFootsteps.Request) -> StepLimits:
+        """The limits of the parameters, reduced if the request asks for less."""
+        step = self.parameters.step
+        single_support = max(step.period - 0.2, 0.3)
+        usual = StepLimits(
+            forward=step.length_max,
+            backward=step.backward_max,
+            sideways=step.sideways_max,
+            turn=step.turn_max,
+            trailing_turn=step.turn_max / 2,
+            width=self.parameters.stance_width,
+            step_time=messages.nanoseconds(request.step_time) / data.SECOND or single_support,
+        )
+        return shorter(usual, request.max_step_length)
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = FootstepGenerationServer()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"footstep_generation_server: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(FootstepGenerationServer, args, ParametersError)
 
 
 if __name__ == "__main__":

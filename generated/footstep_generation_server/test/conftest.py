@@ -261,15 +261,16 @@ def ros(monkeypatch: pytest.MonkeyPatch) -> Iterator[Ros]:
         if find_spec("rmw_local") is not None:
             from rmw_local.virtual_time import virtual_time
 
+            monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")  # virtual time is that of this process
             stack.enter_context(virtual_time())
-            domain = 1 + next(_domains) % _DOMAINS  # heard in this process alone
+            domain = 1 + next(_domains) % _DOMAINS
         else:
+            if "ROS_AUTOMATIC_DISCOVERY_RANGE" not in os.environ:
+                monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
             domain = stack.enter_context(_own_domain())
         import rclpy
         from rclpy.signals import SignalHandlerOptions
 
-        if "ROS_AUTOMATIC_DISCOVERY_RANGE" not in os.environ:
-            monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
         # No signal handlers: Ctrl-C is pytest's.
         rclpy.init(args=[], domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
         stack.callback(rclpy.try_shutdown)

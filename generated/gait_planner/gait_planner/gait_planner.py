@@ -1,90 +1,145 @@
-"""The node gait_planner: written once by ifgen, yours from then on.
-
-`ifgen run -m gait_planner.gait_planner` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node gait_planner: publishes footsteps in the order in which they are due."""
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
-import rclpy
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Point, Twist, Vector3
+from humanoid import data
+from humanoid.planning.footsteps import StepLimits
+from humanoid.planning.gait import GaitPlanner as Planner
+from humanoid.robot import table
+from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
+from humanoid.ros.running import run
 from humanoid_interfaces.msg import FootstepPlan, GaitState
-from rclpy.executors import ExternalShutdownException
+from std_msgs.msg import ColorRGBA
 from std_srvs.srv import Trigger
-from visualization_msgs.msg import MarkerArray
+from visualization_msgs.msg import Marker, MarkerArray
 
 from gait_planner._gait_planner_base import GaitPlannerBase
 from gait_planner._gait_planner_parameters import ParametersError
 
+_COLOURS = {
+    data.Leg.LEFT: ColorRGBA(r=0.18, g=0.62, b=0.36, a=1.0),
+    data.Leg.RIGHT: ColorRGBA(r=0.91, g=0.53, b=0.18, a=1.0),
+}
+_THICKNESS = 0.005  # m
+_WALKING = "navigation_action_server, or whoever sent the plan under way, has been silent"
+_STEERING = "teleop, or whoever sent velocities, has been silent"
+_HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP, data.Mode.FALLEN}
+_LEASE = 500_000_000  # ns that a velocity is valid, and a plan that was sent twice
+
 
 class GaitPlanner(GaitPlannerBase):
-    """Takes a plan of footsteps, or a velocity that it turns into steps, and publishes the steps to walk.
-    A new plan replaces the old one at once. Plans are passed on unchanged: whole_body_controller
-    refuses those that it cannot walk.
-    """
+    """Passes plans on, steers by velocity, and stops the robot."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
-        self.publish_markers(MarkerArray())
+        step = self.parameters.step
+        limits = StepLimits(
+            forward=step.length_max,
+            sideways=step.sideways_max,
+            turn=step.turn_max,
+            trailing_turn=step.turn_max / 2,
+            width=self.parameters.stance_width,
+            step_time=step.single_support_time,
+        )
+        self._planner = Planner(limits, step.double_support_time)
+        self._upcoming = FootstepPlan()  # as last published
+        self._asked = FootstepPlan()  # the last plan with steps
+        self._walking = False  # whether the robot walks it
+        self._lease: tuple[str, int] | None = None  # whose next message is expected, and until when [ns]
+        self._health = Health("gait_planner: commands", self.get_logger(), "plans", "velocities")
 
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
-        """Take a message from `/footsteps/plan`.
-
-        A whole plan. A plan without steps means to stop with the feet side by side. A sender that repeats a
-        plan must keep repeating it, at least every 0.5 s: the robot stops when the repetitions stop
-        """
-        self.get_logger().debug("message on /footsteps/plan")
+        """Walk a plan, or stop if it has no steps."""
+        self._lease = None
+        try:
+            plan = messages.read_footstep_plan(message)
+        except ValueError as error:
+            self._health.takes("plans", f"/footsteps/plan: {error}")
+            return
+        if not plan.steps:
+            self._stop()
+        elif message != self._asked:
+            self._asked, self._walking = message, True
+            self._planner.walk(plan)
+        elif self._walking:
+            self._lease = (_WALKING, self._now() + _LEASE)
 
     def on_humanoid_cmd_vel(self, message: Twist) -> None:
-        """Take a message from `/humanoid/cmd_vel`.
-
-        A velocity to walk at, in base_footprint; zero stops the robot, and so does silence for 0.5 s
-        """
-        self.get_logger().debug("message on /humanoid/cmd_vel")
+        """Walk at a velocity."""
+        velocity = message.linear.x, message.linear.y, message.angular.z
+        if not self._health.takes("velocities", self._planner.velocity(*velocity)):
+            return
+        if any(velocity):
+            self._walking, self._lease = False, (_STEERING, self._now() + _LEASE)
+        elif not self._walking:
+            self._lease = None
 
     def on_gait_state(self, message: GaitState) -> None:
-        """Take a message from `/gait_state`.
-
-        Which step the controller is taking
-        """
-        self.get_logger().debug("message on /gait_state")
+        """Decide what to do next, each time that the controller reports its state."""
+        state = messages.read_gait_state(message)
+        plan = self._planner.update(state)
+        walked = self._walking and state.footstep_index > self._asked.steps[-1].index
+        if walked or state.mode in _HALTED:
+            self._walking, self._lease = False, None
+        if plan is not None:
+            self._upcoming = messages.footstep_plan(plan, state.stamp)
+            self.publish_footsteps_upcoming(self._upcoming)
+            self.publish_markers(_markers(plan, state.stamp))
 
     def handle_clear(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Answer a request to `~/clear`.
-
-        Forget all steps that have not begun
-        """
+        """Stop the robot."""
+        self._stop()
+        response.success = True
         return response
 
     def on_sign_of_life_timer(self) -> None:
-        """Called every 0.02 s."""
-        self.publish_footsteps_upcoming(FootstepPlan())
+        """Repeat the plan: whoever walks these steps must know that the planner is still alive."""
+        self.publish_footsteps_upcoming(self._upcoming)
+        if self._lease is not None and self._now() > self._lease[1]:
+            self.get_logger().warning(f"{self._lease[0]} for {_LEASE / data.SECOND:g} s: the robot stops")
+            self._stop()
 
     def on_diagnostics_timer(self) -> None:
-        """Called every 1 s."""
-        self.publish_diagnostics(DiagnosticArray())
+        """Report what was refused."""
+        self.publish_diagnostics(self._health.report(self._now()))
+
+    def _stop(self) -> None:
+        self._walking, self._lease = False, None
+        self._planner.cancel()
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
+
+
+def _markers(plan: data.FootstepPlan, stamp: int) -> MarkerArray:
+    """The steps as boxes, after a marker that deletes all older ones."""
+    markers = [Marker(header=messages.header(stamp, "odom"), action=Marker.DELETEALL)]
+    size = Vector3(x=table.FOOT_LENGTH, y=table.FOOT_WIDTH, z=_THICKNESS)
+    for step in plan.steps:
+        pose = messages.planar_pose(step.x, step.y, step.yaw)
+        pose.position = Point(x=step.x, y=step.y, z=_THICKNESS / 2)
+        markers.append(
+            Marker(
+                header=messages.header(stamp, "odom"),
+                ns="footsteps",
+                id=step.index,
+                type=Marker.CUBE,
+                action=Marker.ADD,
+                pose=pose,
+                scale=size,
+                color=_COLOURS[step.leg],
+            )
+        )
+    return MarkerArray(markers=markers)
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = GaitPlanner()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"gait_planner: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(GaitPlanner, args, ParametersError)
 
 
 if __name__ == "__main__":

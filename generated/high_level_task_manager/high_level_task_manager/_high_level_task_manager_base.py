@@ -6,15 +6,18 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 from humanoid_interfaces.action import PerformDance, WalkTo
-from humanoid_interfaces.msg import BatteryStatus, DetectedObjectArray, EmergencyStop
+from humanoid_interfaces.msg import BatteryStatus, DetectedObjectArray, EmergencyStop, GaitState, TaskStatus
+from humanoid_interfaces.srv import CheckHeadPose, SolveIK
 from rclpy.action import ActionClient
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.client import Client
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
+from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 from high_level_task_manager._high_level_task_manager_parameters import (
@@ -22,20 +25,31 @@ from high_level_task_manager._high_level_task_manager_parameters import (
     declare_parameters,
     read_parameters,
 )
-from high_level_task_manager._waiting import RunningGoal, send, sleep
+from high_level_task_manager._waiting import RunningGoal, call, send, sleep
 
 # fmt: off
 
-STATE_PUBLISHER_QOS = QoSProfile(
+TASK_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+POSTURE_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
-    durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
 SPEECH_TEXT_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=10,
     reliability=ReliabilityPolicy.RELIABLE,
+)
+GAIT_STATE_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
 FACE_DETECTION_DETECTIONS_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -57,22 +71,33 @@ EMERGENCY_STOP_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class HighLevelTaskManagerBase(Node, ABC):
-    """Turns spoken commands and what the robot sees into goals, one at a time, and gives up on them when
-    the battery runs low or somebody presses the emergency stop.
+    """Does a list of tasks, and what people say and the robot sees, one after the other. It gives up on
+    them when the battery runs low or somebody presses the emergency stop.
     """
 
     parameters: HighLevelTaskManagerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
-    state_publisher: Publisher[String]
-    """The task in progress, in words
+    task_publisher: Publisher[TaskStatus]
+    """The task, each time that it begins or ends
 
-    `~/state`, std_msgs/msg/String.
+    `~/task`, humanoid_interfaces/msg/TaskStatus.
+    """
+    posture_publisher: Publisher[JointState]
+    """Wanted angles of waist, head and arms [rad], by name, while it looks or points; a message without
+    names means back to standing
+
+    `/posture`, sensor_msgs/msg/JointState.
     """
     speech_text_subscription: Subscription[String]
-    """Spoken commands, such as `walk home`, `dance`, `stop`
+    """Spoken commands, such as `walk home`, `dance wave`, `stop`
 
     `/speech/text`, std_msgs/msg/String.
+    """
+    gait_state_subscription: Subscription[GaitState]
+    """Whether the robot stands, and where
+
+    `/gait_state`, humanoid_interfaces/msg/GaitState.
     """
     face_detection_detections_subscription: Subscription[DetectedObjectArray]
     """Faces that the camera sees
@@ -89,12 +114,18 @@ class HighLevelTaskManagerBase(Node, ABC):
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
+    solve_ik_client: Client[SolveIK]
+    """`/solve_ik`, humanoid_interfaces/srv/SolveIK."""
+    check_head_pose_client: Client[CheckHeadPose]
+    """`/check_head_pose`, humanoid_interfaces/srv/CheckHeadPose."""
     walk_to_action_client: ActionClient[WalkTo]
     """`/walk_to`, humanoid_interfaces/action/WalkTo."""
     perform_dance_action_client: ActionClient[PerformDance]
     """`/perform_dance`, humanoid_interfaces/action/PerformDance."""
-    state_timer: Timer
-    """Calls `on_state_timer`."""
+    decide_timer: Timer
+    """Calls `on_decide_timer`."""
+    posture_timer: Timer
+    """Calls `on_posture_timer`."""
 
     def __init__(self, node_name: str = "high_level_task_manager", **options: Any) -> None:
         """Take the options of `rclpy.node.Node`. Raises ParametersError for parameters that break rules."""
@@ -103,10 +134,25 @@ class HighLevelTaskManagerBase(Node, ABC):
         self.add_post_set_parameters_callback(self._replace_parameters)
         # Whatever waits for something else keeps nothing from being called.
         group = ReentrantCallbackGroup()
-        self.state_publisher = self.create_publisher(
-            String,
-            "~/state",
-            STATE_PUBLISHER_QOS,
+        self.task_publisher = self.create_publisher(
+            TaskStatus,
+            "~/task",
+            TASK_PUBLISHER_QOS,
+        )
+        self.posture_publisher = self.create_publisher(
+            JointState,
+            "/posture",
+            POSTURE_PUBLISHER_QOS,
+        )
+        self.solve_ik_client = self.create_client(
+            SolveIK,
+            "/solve_ik",
+            callback_group=group,
+        )
+        self.check_head_pose_client = self.create_client(
+            CheckHeadPose,
+            "/check_head_pose",
+            callback_group=group,
         )
         self.walk_to_action_client = ActionClient(
             self,
@@ -125,6 +171,13 @@ class HighLevelTaskManagerBase(Node, ABC):
             "/speech/text",
             self.on_speech_text,
             SPEECH_TEXT_SUBSCRIPTION_QOS,
+            callback_group=group,
+        )
+        self.gait_state_subscription = self.create_subscription(
+            GaitState,
+            "/gait_state",
+            self.on_gait_state,
+            GAIT_STATE_SUBSCRIPTION_QOS,
             callback_group=group,
         )
         self.face_detection_detections_subscription = self.create_subscription(
@@ -148,24 +201,44 @@ class HighLevelTaskManagerBase(Node, ABC):
             EMERGENCY_STOP_SUBSCRIPTION_QOS,
             callback_group=group,
         )
-        self.state_timer = self.create_timer(
-            1.0,
-            self.on_state_timer,
+        self.decide_timer = self.create_timer(
+            0.1,
+            self.on_decide_timer,
+            callback_group=MutuallyExclusiveCallbackGroup(),
+        )
+        self.posture_timer = self.create_timer(
+            0.05,
+            self.on_posture_timer,
             callback_group=MutuallyExclusiveCallbackGroup(),
         )
 
-    def publish_state(self, message: String) -> None:
-        """Publish on `~/state`.
+    def publish_task(self, message: TaskStatus) -> None:
+        """Publish on `~/task`.
 
-        The task in progress, in words
+        The task, each time that it begins or ends
         """
-        self.state_publisher.publish(message)
+        self.task_publisher.publish(message)
+
+    def publish_posture(self, message: JointState) -> None:
+        """Publish on `/posture`.
+
+        Wanted angles of waist, head and arms [rad], by name, while it looks or points; a message without
+        names means back to standing
+        """
+        self.posture_publisher.publish(message)
 
     @abstractmethod
     async def on_speech_text(self, message: String) -> None:
         """Take a message from `/speech/text`.
 
-        Spoken commands, such as `walk home`, `dance`, `stop`
+        Spoken commands, such as `walk home`, `dance wave`, `stop`
+        """
+
+    @abstractmethod
+    async def on_gait_state(self, message: GaitState) -> None:
+        """Take a message from `/gait_state`.
+
+        Whether the robot stands, and where
         """
 
     @abstractmethod
@@ -188,6 +261,31 @@ class HighLevelTaskManagerBase(Node, ABC):
 
         Cancels the current task
         """
+
+    async def call_solve_ik(self, request: SolveIK.Request, *, timeout_sec: float = 5.0) -> SolveIK.Response:
+        """Call `/solve_ik`. TimeoutError without a response within `timeout_sec` [s]."""
+        response: SolveIK.Response = await call(
+            self,
+            self.solve_ik_client,
+            request,
+            timeout_sec,
+        )
+        return response
+
+    async def call_check_head_pose(
+        self,
+        request: CheckHeadPose.Request,
+        *,
+        timeout_sec: float = 5.0,
+    ) -> CheckHeadPose.Response:
+        """Call `/check_head_pose`. TimeoutError without a response within `timeout_sec` [s]."""
+        response: CheckHeadPose.Response = await call(
+            self,
+            self.check_head_pose_client,
+            request,
+            timeout_sec,
+        )
+        return response
 
     async def send_walk_to(
         self,
@@ -224,8 +322,12 @@ class HighLevelTaskManagerBase(Node, ABC):
         )
 
     @abstractmethod
-    async def on_state_timer(self) -> None:
-        """Called every 1 s."""
+    async def on_decide_timer(self) -> None:
+        """Called every 0.1 s."""
+
+    @abstractmethod
+    async def on_posture_timer(self) -> None:
+        """Called every 0.05 s."""
 
     async def sleep(self, seconds: float) -> None:
         """Let other callbacks run for the given seconds."""

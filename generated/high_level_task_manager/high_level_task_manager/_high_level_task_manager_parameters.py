@@ -21,7 +21,8 @@ class HighLevelTaskManagerParameters:
     """The parameters of the node high_level_task_manager."""
 
     tasks: tuple[str, ...]
-    """The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`
+    """The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `look X Y Z`, `point X Y Z`
+    [m], `wait SECONDS`; they begin when the robot stands
 
     Can be set at start only.
     """
@@ -114,7 +115,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING_ARRAY,
             [],
             ParameterDescriptor(
-                description="The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`",
+                description="The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `look X Y Z`, `point X Y Z` [m], `wait SECONDS`; they begin when the robot stands",
                 read_only=True,
             ),
         ),

@@ -31,6 +31,7 @@ import builtin_interfaces.msg
 import geometry_msgs.msg
 import humanoid_interfaces.action
 import humanoid_interfaces.msg
+import humanoid_interfaces.srv
 import sensor_msgs.msg
 import std_msgs.msg
 from action_msgs.msg import GoalStatus
@@ -58,6 +59,17 @@ EXAMPLES = settings(
 Strategy: TypeAlias = st.SearchStrategy[Any]
 
 # fmt: off
+# The services that the node calls. They answer with defaults where a test wants nothing else.
+ASKED_SERVICES: dict[str, tuple[Any, QoSProfile | None]] = {
+    "/solve_ik": (
+        humanoid_interfaces.srv.SolveIK,
+        None,
+    ),
+    "/check_head_pose": (
+        humanoid_interfaces.srv.CheckHeadPose,
+        None,
+    ),
+}
 # The actions that the node sends goals to. They succeed where a test wants nothing else.
 ASKED_ACTIONS = {
     "/walk_to": humanoid_interfaces.action.WalkTo,
@@ -74,6 +86,9 @@ def start(
     in_threads: bool | None = None,
 ) -> Any:
     """Run a node."""
+    for name, (service, profile) in ASKED_SERVICES.items():
+        if name not in ros.servers:
+            ros.serve(service, name, qos=profile)
     for name, action in ASKED_ACTIONS.items():
         if name not in ros.action_servers:
             ros.serve_action(action, name)
@@ -92,10 +107,12 @@ def ignore(*_: Any) -> None:
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_speech_text": idle,
+    "on_gait_state": idle,
     "on_face_detection_detections": idle,
     "on_battery": idle,
     "on_emergency_stop": idle,
-    "on_state_timer": idle,
+    "on_decide_timer": idle,
+    "on_posture_timer": idle,
     "on_parameters_changed": ignore,
 }
 
@@ -189,27 +206,19 @@ def at_most(bound: int, elements: Strategy, drawn: int = 3) -> Strategy:
 
 # fmt: off
 # The values of fields, one line each; NaN is left out, because it equals nothing.
-CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd\ufeff🤖\U0010ffff"
-STRINGS = st.text(CHARACTERS, max_size=12)
 INT32S = st.integers(-2147483648, 2147483647)
 UINT32S = st.integers(0, 4294967295)
+CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd\ufeff🤖\U0010ffff"
+STRINGS = st.text(CHARACTERS, max_size=12)
+UINT8S = st.integers(0, 255)
+FLOAT64S = st.floats(allow_nan=False)
 FLOAT32S = st.floats(allow_nan=False, width=32)
 BOOLEANS = st.booleans()
-FLOAT64S = st.floats(allow_nan=False)
-UINT8S = st.integers(0, 255)
+UINT64S = st.integers(0, 18446744073709551615)
 
 # The values of messages, one line a field; those that others need come first.
-std_msgs_msg_String = st.builds(std_msgs.msg.String, data=STRINGS)
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
 std_msgs_msg_Header = st.builds(std_msgs.msg.Header, stamp=builtin_interfaces_msg_Time, frame_id=STRINGS)
-sensor_msgs_msg_RegionOfInterest = st.builds(
-    sensor_msgs.msg.RegionOfInterest,
-    x_offset=UINT32S,
-    y_offset=UINT32S,
-    height=UINT32S,
-    width=UINT32S,
-    do_rectify=BOOLEANS,
-)
 geometry_msgs_msg_Point = st.builds(geometry_msgs.msg.Point, x=FLOAT64S, y=FLOAT64S, z=FLOAT64S)
 geometry_msgs_msg_Quaternion = st.builds(
     geometry_msgs.msg.Quaternion,
@@ -222,6 +231,50 @@ geometry_msgs_msg_Pose = st.builds(
     geometry_msgs.msg.Pose,
     position=geometry_msgs_msg_Point,
     orientation=geometry_msgs_msg_Quaternion,
+)
+humanoid_interfaces_msg_TaskStatus = st.builds(
+    humanoid_interfaces.msg.TaskStatus,
+    header=std_msgs_msg_Header,
+    number=UINT32S,
+    waiting=UINT32S,
+    words=st.text(CHARACTERS, max_size=128) | st.just("x" * 128),
+    state=st.sampled_from([0, 1, 2, 3, 4, 5]) | UINT8S,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    goal=geometry_msgs_msg_Pose,
+)
+sensor_msgs_msg_JointState = st.builds(
+    sensor_msgs.msg.JointState,
+    header=std_msgs_msg_Header,
+    name=some(STRINGS),
+    position=some(FLOAT64S),
+    velocity=some(FLOAT64S),
+    effort=some(FLOAT64S),
+)
+std_msgs_msg_String = st.builds(std_msgs.msg.String, data=STRINGS)
+humanoid_interfaces_msg_Stance = st.builds(
+    humanoid_interfaces.msg.Stance,
+    header=std_msgs_msg_Header,
+    support=st.sampled_from([0, 1, 2, 3, 4]) | UINT8S,
+    left_sole=geometry_msgs_msg_Pose,
+    right_sole=geometry_msgs_msg_Pose,
+)
+humanoid_interfaces_msg_GaitState = st.builds(
+    humanoid_interfaces.msg.GaitState,
+    header=std_msgs_msg_Header,
+    mode=st.sampled_from([0, 1, 2, 3, 4, 5, 6, 7]) | UINT8S,
+    reason=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    stance=humanoid_interfaces_msg_Stance,
+    plan_id=UINT32S,
+    footstep_index=UINT32S,
+    phase=FLOAT32S,
+)
+sensor_msgs_msg_RegionOfInterest = st.builds(
+    sensor_msgs.msg.RegionOfInterest,
+    x_offset=UINT32S,
+    y_offset=UINT32S,
+    height=UINT32S,
+    width=UINT32S,
+    do_rectify=BOOLEANS,
 )
 geometry_msgs_msg_Vector3 = st.builds(geometry_msgs.msg.Vector3, x=FLOAT64S, y=FLOAT64S, z=FLOAT64S)
 humanoid_interfaces_msg_DetectedObject = st.builds(
@@ -262,6 +315,43 @@ geometry_msgs_msg_PoseStamped = st.builds(
     geometry_msgs.msg.PoseStamped,
     header=std_msgs_msg_Header,
     pose=geometry_msgs_msg_Pose,
+)
+humanoid_interfaces_srv_SolveIK_Request = st.builds(
+    humanoid_interfaces.srv.SolveIK.Request,
+    chain=st.text(CHARACTERS, max_size=64) | st.just("x" * 64),
+    target=geometry_msgs_msg_PoseStamped,
+    seed=sensor_msgs_msg_JointState,
+    position_only=BOOLEANS,
+    position_tolerance=FLOAT64S,
+    orientation_tolerance=FLOAT64S,
+    attempts=UINT32S,
+    timeout=builtin_interfaces_msg_Duration,
+    random_seed=UINT64S,
+)
+humanoid_interfaces_srv_SolveIK_Response = st.builds(
+    humanoid_interfaces.srv.SolveIK.Response,
+    status=st.sampled_from([0, 1, 2, 3, 4, 5, 6, 7]) | UINT8S,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    solution=sensor_msgs_msg_JointState,
+    position_residual=FLOAT64S,
+    orientation_residual=FLOAT64S,
+    attempts=UINT32S,
+    computing_time=builtin_interfaces_msg_Duration,
+)
+humanoid_interfaces_srv_CheckHeadPose_Request = st.builds(
+    humanoid_interfaces.srv.CheckHeadPose.Request,
+    mode=st.sampled_from([0, 1]) | UINT8S,
+    target=geometry_msgs_msg_PoseStamped,
+    position_tolerance=FLOAT64S,
+    orientation_tolerance=FLOAT64S,
+)
+humanoid_interfaces_srv_CheckHeadPose_Response = st.builds(
+    humanoid_interfaces.srv.CheckHeadPose.Response,
+    reachable=BOOLEANS,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    joints=sensor_msgs_msg_JointState,
+    position_residual=FLOAT64S,
+    orientation_residual=FLOAT64S,
 )
 humanoid_interfaces_action_WalkTo_Goal = st.builds(
     humanoid_interfaces.action.WalkTo.Goal,
@@ -331,13 +421,22 @@ class Topic:
 # fmt: off
 PUBLISHERS = [
     Topic(
-        "~/state",
-        "std_msgs/msg/String",
-        std_msgs.msg.String,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
-        "publish_state",
-        "state_publisher",
-        std_msgs_msg_String,
+        "~/task",
+        "humanoid_interfaces/msg/TaskStatus",
+        humanoid_interfaces.msg.TaskStatus,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        "publish_task",
+        "task_publisher",
+        humanoid_interfaces_msg_TaskStatus,
+    ),
+    Topic(
+        "/posture",
+        "sensor_msgs/msg/JointState",
+        sensor_msgs.msg.JointState,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_posture",
+        "posture_publisher",
+        sensor_msgs_msg_JointState,
     ),
 ]
 SUBSCRIPTIONS = [
@@ -349,6 +448,15 @@ SUBSCRIPTIONS = [
         "on_speech_text",
         "speech_text_subscription",
         std_msgs_msg_String,
+    ),
+    Topic(
+        "/gait_state",
+        "humanoid_interfaces/msg/GaitState",
+        humanoid_interfaces.msg.GaitState,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        "on_gait_state",
+        "gait_state_subscription",
+        humanoid_interfaces_msg_GaitState,
     ),
     Topic(
         "/face_detection/detections",
@@ -435,6 +543,109 @@ def test_subscription(ros: Any, topic: Topic) -> None:
         wait_for_end(ros, begun, ended, topic.method)
 
     check()
+
+
+@dataclass(frozen=True)
+class ServiceCase:
+    """A service, the method and the attribute of the node that belong to it, and messages to try."""
+
+    name: str
+    type_name: str
+    service: Any
+    qos: QoSProfile | None
+    method: str
+    attribute: str
+    requests: Strategy
+    responses: Strategy
+
+    def __str__(self) -> str:
+        """The test's id."""
+        return self.name
+
+
+# fmt: off
+CLIENTS = [
+    ServiceCase(
+        "/solve_ik",
+        "humanoid_interfaces/srv/SolveIK",
+        humanoid_interfaces.srv.SolveIK,
+        None,
+        "call_solve_ik",
+        "solve_ik_client",
+        humanoid_interfaces_srv_SolveIK_Request,
+        humanoid_interfaces_srv_SolveIK_Response,
+    ),
+    ServiceCase(
+        "/check_head_pose",
+        "humanoid_interfaces/srv/CheckHeadPose",
+        humanoid_interfaces.srv.CheckHeadPose,
+        None,
+        "call_check_head_pose",
+        "check_head_pose_client",
+        humanoid_interfaces_srv_CheckHeadPose_Request,
+        humanoid_interfaces_srv_CheckHeadPose_Response,
+    ),
+]
+# fmt: on
+
+
+def check_service(ros: Any, node: Any, case: ServiceCase, names_and_types: Callable[[str, str], Any]) -> str:
+    """Look a service up in the graph, check its type and quality of service, and return its full name."""
+    name: str = node.resolve_service_name(case.name)
+
+    def types() -> Any:
+        return dict(names_and_types(node.get_name(), node.get_namespace())).get(name)
+
+    ros.spin_until(types, f"{name} of the node")
+    assert types() == [case.type_name]
+    if case.qos is not None:
+        found = getattr(node, case.attribute).qos_profile
+        assert_same_qos(found, case.qos, "history", "depth", "reliability", "durability")
+    return name
+
+
+@pytest.mark.parametrize("case", CLIENTS, ids=str)
+def test_client(ros: Any, case: ServiceCase) -> None:
+    """The node's method calls the service, and returns its answer."""
+    node = start_idle(ros)
+    name = check_service(ros, node, case, ros.peer.get_client_names_and_types_by_node)
+    asked: list[Any] = []
+    answers: list[Any] = [case.service.Response()]
+
+    def answer(request: Any, _: Any) -> Any:
+        asked.append(request)
+        return answers[-1]
+
+    ros.serve(case.service, name, answer)
+    call = getattr(node, case.method)
+    ros.spin_until(getattr(node, case.attribute).service_is_ready, f"service {name} in the node's sight")
+
+    @EXAMPLES
+    @given(case.requests, case.responses)
+    def check(request: Any, response: Any) -> None:
+        answers.append(response)
+        asked.clear()
+        done = ros.executor.create_task(call(request, timeout_sec=5.0))
+        assert ros.result(done, f"response of {name}") == response
+        assert request in asked  # among what the node may ask by itself
+
+    check()
+
+
+@pytest.mark.parametrize("case", CLIENTS, ids=str)
+def test_client_without_a_service(ros: Any, case: ServiceCase) -> None:
+    """If nothing answers, a call ends with a TimeoutError."""
+    node = start_idle(ros)
+    name = node.resolve_service_name(case.name)
+    client = getattr(node, case.attribute)
+    ros.peer.destroy_service(ros.servers.pop(name))
+    while client.service_is_ready():
+        # Calls of the node's own may have been under way: not every transport tells that nobody will answer.
+        with suppress(ConnectionError):
+            ros.spin_until(lambda: not client.service_is_ready(), f"end of the service {name}")
+    call = getattr(node, case.method)(case.service.Request(), timeout_sec=0.1)
+    with pytest.raises(TimeoutError):
+        ros.result(ros.executor.create_task(call), "end of the call")
 
 
 @dataclass(frozen=True)
@@ -608,7 +819,7 @@ PARAMETERS = [
         [],
         [[], ["a"], ["b"], ["c"], ["d"], ["a", "b"]],
         [],
-        description="The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `wait SECONDS`",
+        description="The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `look X Y Z`, `point X Y Z` [m], `wait SECONDS`; they begin when the robot stands",
         read_only=True,
     ),
     ParameterCase(
@@ -731,12 +942,19 @@ class TimerCase:
 # fmt: off
 TIMERS = [
     TimerCase(
-        "on_state_timer",
-        "state_timer",
-        1.0,
+        "on_decide_timer",
+        "decide_timer",
+        0.1,
         True,
         [
-            ("publish_state", std_msgs.msg.String, "~/state", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL), 0.0),
+        ],
+    ),
+    TimerCase(
+        "on_posture_timer",
+        "posture_timer",
+        0.05,
+        True,
+        [
         ],
     ),
 ]

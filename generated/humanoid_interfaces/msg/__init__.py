@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from humanoid_interfaces.msg._footstep_plan import FootstepPlan as FootstepPlan
     from humanoid_interfaces.msg._gait_state import GaitState as GaitState
     from humanoid_interfaces.msg._stance import Stance as Stance
+    from humanoid_interfaces.msg._task_status import TaskStatus as TaskStatus
 
 __all__ = [
     "BatteryStatus",
@@ -27,6 +28,7 @@ __all__ = [
     "FootstepPlan",
     "GaitState",
     "Stance",
+    "TaskStatus",
 ]
 
 __getattr__, __dir__ = lazy_exports(
@@ -40,5 +42,6 @@ __getattr__, __dir__ = lazy_exports(
         "FootstepPlan": "_footstep_plan",
         "GaitState": "_gait_state",
         "Stance": "_stance",
+        "TaskStatus": "_task_status",
     },
 )

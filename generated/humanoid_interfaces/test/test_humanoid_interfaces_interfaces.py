@@ -262,6 +262,16 @@ humanoid_interfaces_msg_GaitState = st.builds(
     footstep_index=UINT32S,
     phase=FLOAT32S,
 )
+humanoid_interfaces_msg_TaskStatus = st.builds(
+    humanoid_interfaces.msg.TaskStatus,
+    header=std_msgs_msg_Header,
+    number=UINT32S,
+    waiting=UINT32S,
+    words=st.text(CHARACTERS, max_size=128) | st.just("x" * 128),
+    state=st.sampled_from([0, 1, 2, 3, 4, 5]) | UINT8S,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    goal=geometry_msgs_msg_Pose,
+)
 humanoid_interfaces_srv_AddTwoInts_Request = st.builds(
     humanoid_interfaces.srv.AddTwoInts.Request,
     a=INT64S,
@@ -634,6 +644,36 @@ CASES = [
             "SUPPORT_NONE": 4,
         },
         refused={"header": [None], "support": [-1, 256, "0"], "left_sole": [None], "right_sole": [None]},
+    ),
+    Case(
+        humanoid_interfaces.msg.TaskStatus,
+        humanoid_interfaces_msg_TaskStatus,
+        fields={
+            "header": "std_msgs/Header",
+            "number": "uint32",
+            "waiting": "uint32",
+            "words": "string<128>",
+            "state": "uint8",
+            "message": "string<255>",
+            "goal": "geometry_msgs/Pose",
+        },
+        constants={
+            "STATE_UNKNOWN": 0,
+            "STATE_IDLE": 1,
+            "STATE_RUNNING": 2,
+            "STATE_SUCCEEDED": 3,
+            "STATE_FAILED": 4,
+            "STATE_CANCELED": 5,
+        },
+        refused={
+            "header": [None],
+            "number": [-1, 4294967296, "0"],
+            "waiting": [-1, 4294967296, "0"],
+            "words": [0, "x" * 129],
+            "state": [-1, 256, "0"],
+            "message": [0, "x" * 256],
+            "goal": [None],
+        },
     ),
     Case(
         humanoid_interfaces.srv.AddTwoInts.Request,

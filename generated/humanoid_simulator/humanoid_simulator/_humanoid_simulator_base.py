@@ -11,7 +11,6 @@ from humanoid_interfaces.msg import Stance
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
-from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
@@ -21,7 +20,7 @@ from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock as rosgraph_msgs_msg_Clock
 from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState
-from std_msgs.msg import Bool, Float64MultiArray, String
+from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
@@ -31,19 +30,15 @@ from humanoid_simulator._humanoid_simulator_parameters import (
     read_parameters,
 )
 
-# fmt: off
-
 CLOCK_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.BEST_EFFORT,
 )
-JOINT_STATES_PUBLISHER_QOS = QoSProfile(
+JOINT_ENCODERS_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.BEST_EFFORT,
-    durability=DurabilityPolicy.VOLATILE,
-    deadline=Duration(nanoseconds=20_000_000),
 )
 IMU_DATA_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -94,12 +89,6 @@ DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
     depth=10,
     reliability=ReliabilityPolicy.RELIABLE,
 )
-SERVOS_STANDBY_PUBLISHER_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.RELIABLE,
-    durability=DurabilityPolicy.TRANSIENT_LOCAL,
-)
 ROBOT_DESCRIPTION_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
@@ -122,7 +111,7 @@ GROUND_TRUTH_STANCE_PUBLISHER_QOS = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.BEST_EFFORT,
 )
-WHOLE_BODY_POSITION_CONTROLLER_COMMANDS_SUBSCRIPTION_QOS = QoSProfile(
+JOINT_COMMANDS_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
@@ -136,7 +125,7 @@ PUSH_SUBSCRIPTION_QOS = QoSProfile(
 
 class HumanoidSimulatorBase(Node, ABC):
     """Steps the physics of the humanoid and is the only source of time. It publishes what the sensors
-    measure, stamped with the time on /clock, and passes incoming set-points to the joints. It does not
+    measure, stamped with the time on /clock, and its servos follow incoming set-points. It does not
     balance the robot.
     """
 
@@ -148,10 +137,10 @@ class HumanoidSimulatorBase(Node, ABC):
 
     `/clock`, rosgraph_msgs/msg/Clock.
     """
-    joint_states_publisher: Publisher[JointState]
-    """Position [rad], velocity [rad/s] and effort [N m] of all 29 joints, in the model's order
+    joint_encoders_publisher: Publisher[JointState]
+    """Position [rad], velocity [rad/s] and effort [N m] of all joints, as their drivers report them
 
-    `/joint_states`, sensor_msgs/msg/JointState.
+    `/joint_encoders`, sensor_msgs/msg/JointState.
     """
     imu_data_publisher: Publisher[Imu]
     """Orientation, angular velocity and acceleration (gravity included) of the pelvis
@@ -194,14 +183,9 @@ class HumanoidSimulatorBase(Node, ABC):
     `/battery_state`, sensor_msgs/msg/BatteryState.
     """
     diagnostics_publisher: Publisher[DiagnosticArray]
-    """How many set-points were refused, and why the last one was, once per simulated second
+    """How many set-points and pushes were refused, and why the last one was, once per simulated second
 
     `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
-    """
-    servos_standby_publisher: Publisher[String]
-    """Why the servos hold the robot on their own; empty while they follow set-points
-
-    `/servos/standby`, std_msgs/msg/String.
     """
     robot_description_publisher: Publisher[String]
     """The robot as URDF
@@ -223,12 +207,11 @@ class HumanoidSimulatorBase(Node, ABC):
 
     `~/ground_truth/stance`, humanoid_interfaces/msg/Stance.
     """
-    whole_body_position_controller_commands_subscription: Subscription[Float64MultiArray]
-    """Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
-    labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
-    and stride [ns]
+    joint_commands_subscription: Subscription[JointState]
+    """Position set-points [rad] for servos, by joint name, with the stamp of the sensor values that they
+    answer. A servo without a new one keeps its last
 
-    `/whole_body_position_controller/commands`, std_msgs/msg/Float64MultiArray.
+    `/joint_commands`, sensor_msgs/msg/JointState.
     """
     push_subscription: Subscription[WrenchStamped]
     """A push on the torso for 0.1 s, force [N] in map
@@ -263,10 +246,10 @@ class HumanoidSimulatorBase(Node, ABC):
             "/clock",
             CLOCK_PUBLISHER_QOS,
         )
-        self.joint_states_publisher = self.create_publisher(
+        self.joint_encoders_publisher = self.create_publisher(
             JointState,
-            "/joint_states",
-            JOINT_STATES_PUBLISHER_QOS,
+            "/joint_encoders",
+            JOINT_ENCODERS_PUBLISHER_QOS,
         )
         self.imu_data_publisher = self.create_publisher(
             Imu,
@@ -313,11 +296,6 @@ class HumanoidSimulatorBase(Node, ABC):
             "/diagnostics",
             DIAGNOSTICS_PUBLISHER_QOS,
         )
-        self.servos_standby_publisher = self.create_publisher(
-            String,
-            "/servos/standby",
-            SERVOS_STANDBY_PUBLISHER_QOS,
-        )
         self.robot_description_publisher = self.create_publisher(
             String,
             "/robot_description",
@@ -338,11 +316,11 @@ class HumanoidSimulatorBase(Node, ABC):
             "~/ground_truth/stance",
             GROUND_TRUTH_STANCE_PUBLISHER_QOS,
         )
-        self.whole_body_position_controller_commands_subscription = self.create_subscription(
-            Float64MultiArray,
-            "/whole_body_position_controller/commands",
-            self.on_whole_body_position_controller_commands,
-            WHOLE_BODY_POSITION_CONTROLLER_COMMANDS_SUBSCRIPTION_QOS,
+        self.joint_commands_subscription = self.create_subscription(
+            JointState,
+            "/joint_commands",
+            self.on_joint_commands,
+            JOINT_COMMANDS_SUBSCRIPTION_QOS,
         )
         self.push_subscription = self.create_subscription(
             WrenchStamped,
@@ -378,12 +356,12 @@ class HumanoidSimulatorBase(Node, ABC):
         """
         self.clock_publisher.publish(message)
 
-    def publish_joint_states(self, message: JointState) -> None:
-        """Publish on `/joint_states`.
+    def publish_joint_encoders(self, message: JointState) -> None:
+        """Publish on `/joint_encoders`.
 
-        Position [rad], velocity [rad/s] and effort [N m] of all 29 joints, in the model's order
+        Position [rad], velocity [rad/s] and effort [N m] of all joints, as their drivers report them
         """
-        self.joint_states_publisher.publish(message)
+        self.joint_encoders_publisher.publish(message)
 
     def publish_imu_data(self, message: Imu) -> None:
         """Publish on `/imu/data`.
@@ -444,16 +422,9 @@ class HumanoidSimulatorBase(Node, ABC):
     def publish_diagnostics(self, message: DiagnosticArray) -> None:
         """Publish on `/diagnostics`.
 
-        How many set-points were refused, and why the last one was, once per simulated second
+        How many set-points and pushes were refused, and why the last one was, once per simulated second
         """
         self.diagnostics_publisher.publish(message)
-
-    def publish_servos_standby(self, message: String) -> None:
-        """Publish on `/servos/standby`.
-
-        Why the servos hold the robot on their own; empty while they follow set-points
-        """
-        self.servos_standby_publisher.publish(message)
 
     def publish_robot_description(self, message: String) -> None:
         """Publish on `/robot_description`.
@@ -484,12 +455,11 @@ class HumanoidSimulatorBase(Node, ABC):
         self.ground_truth_stance_publisher.publish(message)
 
     @abstractmethod
-    def on_whole_body_position_controller_commands(self, message: Float64MultiArray) -> None:
-        """Take a message from `/whole_body_position_controller/commands`.
+    def on_joint_commands(self, message: JointState) -> None:
+        """Take a message from `/joint_commands`.
 
-        Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
-        labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
-        and stride [ns]
+        Position set-points [rad] for servos, by joint name, with the stamp of the sensor values that they
+        answer. A servo without a new one keeps its last
         """
 
     @abstractmethod

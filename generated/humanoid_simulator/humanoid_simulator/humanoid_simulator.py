@@ -1,114 +1,280 @@
-"""The node humanoid_simulator: written once by ifgen, yours from then on.
-
-`ifgen run -m humanoid_simulator.humanoid_simulator` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node humanoid_simulator: the humanoid in MuJoCo, the only source of time and of sensor values."""
 
 from __future__ import annotations
 
-import sys
+import math
+import time
+from array import array
 from typing import Any
 
-import rclpy
-from diagnostic_msgs.msg import DiagnosticArray
-from geometry_msgs.msg import WrenchStamped
-from humanoid_interfaces.msg import Stance
-from nav_msgs.msg import Odometry
-from rclpy.executors import ExternalShutdownException
-from rosgraph_msgs.msg import Clock as rosgraph_msgs_msg_Clock
-from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState
-from std_msgs.msg import Bool, Float64MultiArray, String
+import numpy as np
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import TransformStamped, WrenchStamped
+from humanoid import data
+from humanoid.control.posture import standing
+from humanoid.control.reference import GaitParameters
+from humanoid.robot import table
+from humanoid.robot.external import load_model
+from humanoid.robot.urdf import write_urdf
+from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
+from humanoid.ros.running import run
+from humanoid.simulation.battery import BatteryPack
+from humanoid.simulation.rendering import HeadCamera, RenderingError
+from humanoid.simulation.sim import QUIET, Noise, Simulator
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import BatteryState, CameraInfo, Image, JointState
+from std_msgs.msg import Bool, Header, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase
 from humanoid_simulator._humanoid_simulator_parameters import ParametersError
 
-# fmt: off
+_FEET = (np.array([0.0, table.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -table.STANCE_WIDTH / 2, 0.0]))
+_LOST = 0.1  # s that paced lockstep may lag behind the wall clock before the lost time is dropped
+_MADE_UP = 10  # periods that physics may lag behind in real time
+_PUSH = 0.1  # s
+_STRONGEST = 1000.0  # N
+_BATTERY_PERIOD = 1.0  # s
+_COMMANDER = "joint_controller"
 
 
 class HumanoidSimulator(HumanoidSimulatorBase):
-    """Steps the physics of the humanoid and is the only source of time. It publishes what the sensors
-    measure, stamped with the time on /clock, and passes incoming set-points to the joints. It does not
-    balance the robot.
+    """Steps when the set-points of the moment have arrived (lockstep), or with the wall clock.
+
+    In lockstep a run repeats exactly: nothing in it depends on the wall clock, unless no set-points arrive
+    for as long as `patience`.
     """
 
+    _camera: HeadCamera | None = None  # also of a node that a bad parameter ends before it has begun
+
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
-        self.publish_l_foot_contact(Bool())
-        self.publish_r_foot_contact(Bool())
-        self.publish_head_camera_image_raw(Image())
-        self.publish_head_camera_camera_info(CameraInfo())
-        self.publish_battery_state(BatteryState())
-        self.publish_diagnostics(DiagnosticArray())
-        self.publish_servos_standby(String())
-        self.publish_robot_description(String())
-        self.publish_tf_static(TFMessage())
-        self.publish_ground_truth_odom(Odometry())
-        self.publish_ground_truth_stance(Stance())
+        self._model = load_model(self.parameters.model_file, self.parameters.joint_map)
+        noise = Noise() if self.parameters.noise else QUIET
+        self._period = round(self.parameters.control_period * data.SECOND)
+        self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period)
+        self._battery = BatteryPack()
+        self._health = Health("humanoid_simulator: commands", self.get_logger(), "set-points", "pushes")
+        self._paused = False
+        self._blind = False  # no image can be drawn here
+        self._begin()
+        self.publish_robot_description(String(data=write_urdf()))
+        self.publish_tf_static(TFMessage(transforms=[_identity("map", "odom")]))
 
-    def on_whole_body_position_controller_commands(self, message: Float64MultiArray) -> None:
-        """Take a message from `/whole_body_position_controller/commands`.
+    def destroy_node(self) -> None:
+        """Release OpenGL too."""
+        if self._camera is not None:
+            self._camera.close()
+        super().destroy_node()
 
-        Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
-        labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
-        and stride [ns]
-        """
-        self.get_logger().debug("message on /whole_body_position_controller/commands")
+    @property
+    def stamp(self) -> int:
+        """Simulated time [ns]."""
+        return self.simulator.stamp
+
+    def on_joint_commands(self, message: JointState) -> None:
+        """Give the servos new set-points; in lockstep, time waits for them."""
+        try:
+            command = messages.read_joint_commands(message, table.JOINT_NAMES)
+        except ValueError as error:
+            self._health.takes("set-points", f"/joint_commands: {error}")
+            return
+        self.simulator.protect(command)
+        self._alone, self._commanded = False, True
+        if command.stamp == self.stamp:
+            self._answered = True
+            if self.parameters.lockstep and not self._paused:
+                self._step_in_time()
 
     def on_push(self, message: WrenchStamped) -> None:
-        """Take a message from `~/push`.
-
-        A push on the torso for 0.1 s, force [N] in map
-        """
-        self.get_logger().debug("message on ~/push")
+        """Push the torso."""
+        force = messages.numbers(message.wrench.force)
+        possible = np.abs(force).max() <= _STRONGEST  # false for NaN too
+        if self._health.takes("pushes", "" if possible else f"more than {_STRONGEST:g} N along an axis"):
+            self.simulator.push(force, _PUSH)
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Answer a request to `~/reset`.
-
-        Stand the robot up where it started
-        """
+        """Start again at time 0."""
+        self._begin()
+        response.success = True
         return response
 
     def handle_pause(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        """Answer a request to `~/pause`.
-
-        Stop time, or let it run on
-        """
+        """Stop time, or let it run on."""
+        self._paused = request.data
+        self._restart_wall()
+        response.success = True
         return response
 
     def handle_step(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Answer a request to `~/step`.
-
-        Run one control period while paused
-        """
+        """Run one control period."""
+        response.success = self._paused
+        response.message = "" if self._paused else "time is not paused"
+        if self._paused:
+            self._step()
         return response
 
     def on_pace_timer(self) -> None:
-        """Called every `control_period` [s]."""
-        self.publish_clock(rosgraph_msgs_msg_Clock())
-        self.publish_joint_states(JointState())
-        self.publish_imu_data(Imu())
-        self.publish_l_foot_wrench(WrenchStamped())
-        self.publish_r_foot_wrench(WrenchStamped())
+        """Advance time if nothing else does: by the wall clock, or because nobody answers."""
+        if self._paused:
+            return
+        if not self._commanded:
+            # The robot is not left on its own before there is a node that balances it.
+            if time.monotonic() - self._sent > self.parameters.patience:
+                self._publish()  # nobody was there to receive it the first time
+            self._restart_wall()
+        elif not self.parameters.lockstep:
+            behind = int((time.monotonic() - self._wall) * data.SECOND) - self.stamp
+            # A few late periods are made up for, two at a time. More than that is lost, and the log says so.
+            if behind > _MADE_UP * self._period:
+                self.get_logger().warning("physics lags behind the wall clock", throttle_duration_sec=5.0)
+                self._restart_wall()
+            for _ in range(min(max(behind // self._period, 0), 2)):
+                self._step()
+        elif self._answered:
+            self._step_in_time()
+        elif self._alone or time.monotonic() - self._sent > self.parameters.patience:
+            # After one wait without an answer, the controller is not awaited again until it is heard.
+            self._alone = True
+            text = f"no set-points from {_COMMANDER}: time goes on without them"
+            self.get_logger().warning(text, throttle_duration_sec=5.0)
+            self._step()
+
+    def _begin(self) -> None:
+        posture, base = standing(self._model, _FEET, GaitParameters())
+        self.simulator.reset(posture, base)
+        self._contacts: tuple[bool, bool] | None = None
+        self._due: dict[str, int] = {}  # things that are due periodically, and when they are due next
+        self._sensors: data.Sensors | None = None
+        self._commanded = False
+        self._alone = False  # nobody answers any longer
+        self._restart_wall()
+        self._publish()
+
+    def _restart_wall(self) -> None:
+        """Align the wall clock with the present simulated time."""
+        speed = self.parameters.speed if self.parameters.lockstep else 1.0
+        self._wall = time.monotonic() - self.stamp / data.SECOND / (speed or 1.0)
+
+    def _step_in_time(self) -> None:
+        """Step once the wall clock allows it; lost time is not made up for.
+
+        No other callback runs meanwhile. Otherwise the order of events, and so the run, would depend on that
+        clock.
+        """
+        if speed := self.parameters.speed:
+            ahead = self.stamp / data.SECOND / speed - (time.monotonic() - self._wall)
+            if ahead < -_LOST:
+                self._restart_wall()
+            time.sleep(max(ahead, 0.0))
+        self._step()
+
+    def _step(self) -> None:
+        self.simulator.step()
+        self._sensors = None
+        self._publish()
+
+    def _publish(self) -> None:
+        """Publish all sensor values of this moment, and then the time."""
+        sensors = self._sensors = self._sensors or self.simulator.sensors()
+        self._answered = False
+        self._sent = time.monotonic()
+        self.publish_joint_encoders(messages.joint_states(sensors.joints))
+        self.publish_imu_data(messages.imu(sensors.imu))
+        self.publish_l_foot_wrench(messages.wrench(sensors.wrenches[0], "l_ankle"))
+        self.publish_r_foot_wrench(messages.wrench(sensors.wrenches[1], "r_ankle"))
+        if sensors.contacts != self._contacts:
+            self._contacts = sensors.contacts
+            self.publish_l_foot_contact(Bool(data=sensors.contacts[0]))
+            self.publish_r_foot_contact(Bool(data=sensors.contacts[1]))
+        if self.parameters.ground_truth and self._is_time_for(
+            "ground truth", self.parameters.ground_truth_period
+        ):
+            self.publish_ground_truth_odom(messages.odometry(self.simulator.truth()))
+            self.publish_ground_truth_stance(messages.stance(self.simulator.sole_truth(), self.stamp))
+        reading = self._battery.update(sensors.joints)
+        if self._is_time_for("battery", _BATTERY_PERIOD):
+            self.publish_battery_state(
+                BatteryState(
+                    header=messages.header(reading.stamp, ""),
+                    voltage=reading.voltage,
+                    current=reading.current,
+                    percentage=reading.charge,
+                    temperature=reading.temperature,
+                    present=True,
+                    power_supply_status=BatteryState.POWER_SUPPLY_STATUS_DISCHARGING,
+                    power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LION,
+                )
+            )
+            self.publish_diagnostics(self._health.report(self.stamp))
+        if self._is_time_for("picture", 1 / self.parameters.camera.rate):
+            self._take_picture()
+        if self._is_time_for("clock", self.parameters.clock_period):
+            self.publish_clock(Clock(clock=messages.time_of(self.stamp)))
+
+    def _is_time_for(self, what: str, period: float) -> bool:
+        """Whether something with this period [s of simulated time] is due now."""
+        due = self._due.get(what, self.stamp)
+        if self.stamp < due:
+            return False
+        self._due[what] = due + max(round(period * data.SECOND), self._period)
+        return True
+
+    def _take_picture(self) -> None:
+        """Publish the image of the head camera, if anybody subscribes to it."""
+        if not self.head_camera_image_raw_publisher.get_subscription_count() or self._blind:
+            return
+        try:
+            self._camera = self._camera or HeadCamera(self._model)
+        except RenderingError as error:
+            self._blind = True
+            self.get_logger().error(str(error))
+            return
+        picture = self._camera.picture(self.simulator)
+        height, width, planes = picture.shape
+        header = messages.header(self.stamp, table.CAMERA_FRAME)
+        self.publish_head_camera_camera_info(_camera_info(header, width, height))
+        self.publish_head_camera_image_raw(
+            Image(
+                header=header,
+                height=height,
+                width=width,
+                encoding="rgb8",
+                step=width * planes,
+                data=array("B", picture.tobytes()),
+            )
+        )
+
+
+def _camera_info(header: Header, width: int, height: int) -> CameraInfo:
+    """The calibration of a camera without distortion, from its vertical field of view."""
+    focal = height / 2 / math.tan(math.radians(table.CAMERA_FOVY) / 2)
+    x, y = width / 2, height / 2
+    return CameraInfo(
+        header=header,
+        height=height,
+        width=width,
+        distortion_model="plumb_bob",
+        d=[0.0] * 5,
+        k=[focal, 0.0, x, 0.0, focal, y, 0.0, 0.0, 1.0],
+        r=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
+        p=[focal, 0.0, x, 0.0, 0.0, focal, y, 0.0, 0.0, 0.0, 1.0, 0.0],
+    )
+
+
+def _identity(parent: str, child: str) -> TransformStamped:
+    transform = TransformStamped(child_frame_id=child)
+    transform.header.frame_id = parent
+    transform.header.stamp = Time()
+    transform.transform.rotation.w = 1.0
+    return transform
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = HumanoidSimulator()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"humanoid_simulator: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(HumanoidSimulator, args, ParametersError)
 
 
 if __name__ == "__main__":

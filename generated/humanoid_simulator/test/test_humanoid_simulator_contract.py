@@ -81,7 +81,7 @@ def ignore(*_: Any) -> None:
 
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
-    "on_whole_body_position_controller_commands": idle,
+    "on_joint_commands": idle,
     "on_push": idle,
     "handle_reset": idle,
     "handle_pause": idle,
@@ -347,22 +347,6 @@ humanoid_interfaces_msg_Stance = st.builds(
     left_sole=geometry_msgs_msg_Pose,
     right_sole=geometry_msgs_msg_Pose,
 )
-std_msgs_msg_MultiArrayDimension = st.builds(
-    std_msgs.msg.MultiArrayDimension,
-    label=STRINGS,
-    size=UINT32S,
-    stride=UINT32S,
-)
-std_msgs_msg_MultiArrayLayout = st.builds(
-    std_msgs.msg.MultiArrayLayout,
-    dim=some(std_msgs_msg_MultiArrayDimension),
-    data_offset=UINT32S,
-)
-std_msgs_msg_Float64MultiArray = st.builds(
-    std_msgs.msg.Float64MultiArray,
-    layout=std_msgs_msg_MultiArrayLayout,
-    data=some(FLOAT64S),
-)
 std_srvs_srv_Trigger_Request = st.builds(std_srvs.srv.Trigger.Request)
 std_srvs_srv_Trigger_Response = st.builds(std_srvs.srv.Trigger.Response, success=BOOLEANS, message=STRINGS)
 std_srvs_srv_SetBool_Request = st.builds(std_srvs.srv.SetBool.Request, data=BOOLEANS)
@@ -399,12 +383,12 @@ PUBLISHERS = [
         rosgraph_msgs_msg_Clock,
     ),
     Topic(
-        "/joint_states",
+        "/joint_encoders",
         "sensor_msgs/msg/JointState",
         sensor_msgs.msg.JointState,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE, deadline=Duration(nanoseconds=20_000_000)),
-        "publish_joint_states",
-        "joint_states_publisher",
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+        "publish_joint_encoders",
+        "joint_encoders_publisher",
         sensor_msgs_msg_JointState,
     ),
     Topic(
@@ -489,15 +473,6 @@ PUBLISHERS = [
         diagnostic_msgs_msg_DiagnosticArray,
     ),
     Topic(
-        "/servos/standby",
-        "std_msgs/msg/String",
-        std_msgs.msg.String,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
-        "publish_servos_standby",
-        "servos_standby_publisher",
-        std_msgs_msg_String,
-    ),
-    Topic(
         "/robot_description",
         "std_msgs/msg/String",
         std_msgs.msg.String,
@@ -536,13 +511,13 @@ PUBLISHERS = [
 ]
 SUBSCRIPTIONS = [
     Topic(
-        "/whole_body_position_controller/commands",
-        "std_msgs/msg/Float64MultiArray",
-        std_msgs.msg.Float64MultiArray,
+        "/joint_commands",
+        "sensor_msgs/msg/JointState",
+        sensor_msgs.msg.JointState,
         QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE),
-        "on_whole_body_position_controller_commands",
-        "whole_body_position_controller_commands_subscription",
-        std_msgs_msg_Float64MultiArray,
+        "on_joint_commands",
+        "joint_commands_subscription",
+        sensor_msgs_msg_JointState,
     ),
     Topic(
         "~/push",
@@ -934,7 +909,7 @@ TIMERS = [
         False,
         [
             ("publish_clock", rosgraph_msgs.msg.Clock, "/clock", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT), 0.0),
-            ("publish_joint_states", sensor_msgs.msg.JointState, "/joint_states", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE, deadline=Duration(nanoseconds=20_000_000)), 0.02),
+            ("publish_joint_encoders", sensor_msgs.msg.JointState, "/joint_encoders", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT), 0.0),
             ("publish_imu_data", sensor_msgs.msg.Imu, "/imu/data", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT), 0.0),
             ("publish_l_foot_wrench", geometry_msgs.msg.WrenchStamped, "/l_foot/wrench", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT), 0.0),
             ("publish_r_foot_wrench", geometry_msgs.msg.WrenchStamped, "/r_foot/wrench", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT), 0.0),

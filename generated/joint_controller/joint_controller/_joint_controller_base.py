@@ -6,16 +6,16 @@ from abc import ABC, abstractmethod
 from contextlib import ExitStack
 from typing import Any
 
-from humanoid_interfaces.msg import EmergencyStop
-from rclpy.duration import Duration
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import WrenchStamped
 from rclpy.lifecycle import LifecycleNode, LifecyclePublisher, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
-from sensor_msgs.msg import JointState
-from std_msgs.msg import Float64MultiArray
+from sensor_msgs.msg import Imu, JointState
+from std_msgs.msg import Float64MultiArray, String
 from std_srvs.srv import SetBool
 
 from joint_controller._joint_controller_parameters import (
@@ -31,62 +31,102 @@ JOINT_COMMANDS_PUBLISHER_QOS = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
 )
-WHOLE_BODY_POSITION_CONTROLLER_COMMANDS_SUBSCRIPTION_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.RELIABLE,
-)
-JOINT_STATES_SUBSCRIPTION_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.BEST_EFFORT,
-    durability=DurabilityPolicy.VOLATILE,
-    deadline=Duration(nanoseconds=20_000_000),
-)
-EMERGENCY_STOP_SUBSCRIPTION_QOS = QoSProfile(
+SERVOS_STANDBY_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
+DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
+)
+WHOLE_BODY_POSITION_CONTROLLER_COMMANDS_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+)
+JOINT_ENCODERS_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=5,
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+)
+IMU_DATA_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+)
+L_FOOT_WRENCH_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+)
+R_FOOT_WRENCH_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+)
 
 
 class JointControllerBase(LifecycleNode, ABC):
-    """The last node before the motors. It passes position set-points on, limited in range and speed, and
-    lets nothing through that is late, incomplete or not a number. Without a valid command it holds its
-    present posture.
+    """The last node before the motors. It passes position set-points on, and lets nothing through that is
+    late, incomplete, out of range or not a number. When no good command arrives, it makes the robot
+    stand on its own, by the sensors alone, until commands last and agree with that.
     """
 
     parameters: JointControllerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
     joint_commands_publisher: LifecyclePublisher[JointState]
-    """Set-points for the motors, by joint name [rad]
+    """Set-points for the motors, by joint name [rad], with the stamp of the readings that they answer
 
     `/joint_commands`, sensor_msgs/msg/JointState.
     """
+    servos_standby_publisher: LifecyclePublisher[String]
+    """Why the robot stands on its own; empty while commands are passed on
+
+    `/servos/standby`, std_msgs/msg/String.
+    """
+    diagnostics_publisher: LifecyclePublisher[DiagnosticArray]
+    """How many set-points were refused, and why the last one was
+
+    `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
+    """
     whole_body_position_controller_commands_subscription: Subscription[Float64MultiArray]
-    """Position set-points [rad] in the order of the parameter joints
+    """Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
+    labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
+    and stride [ns]
 
     `/whole_body_position_controller/commands`, std_msgs/msg/Float64MultiArray.
     """
-    joint_states_subscription: Subscription[JointState]
-    """Angles [rad] and velocities [rad/s] as measured
+    joint_encoders_subscription: Subscription[JointState]
+    """Angles [rad] and velocities [rad/s] as measured, to stand by
 
-    `/joint_states`, sensor_msgs/msg/JointState.
+    `/joint_encoders`, sensor_msgs/msg/JointState.
     """
-    emergency_stop_subscription: Subscription[EmergencyStop]
-    """Overrides every command
+    imu_data_subscription: Subscription[Imu]
+    """Orientation and angular velocity of the pelvis, to stand by
 
-    `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
+    `/imu/data`, sensor_msgs/msg/Imu.
+    """
+    l_foot_wrench_subscription: Subscription[WrenchStamped]
+    """Force [N] and torque [N m] of the floor on the left ankle, to stand by
+
+    `/l_foot/wrench`, geometry_msgs/msg/WrenchStamped.
+    """
+    r_foot_wrench_subscription: Subscription[WrenchStamped]
+    """Force [N] and torque [N m] of the floor on the right ankle, to stand by
+
+    `/r_foot/wrench`, geometry_msgs/msg/WrenchStamped.
     """
     hold_service: Service[SetBool]
-    """Hold the present posture whatever is commanded, or stop holding it
+    """Let the robot stand on its own whatever is commanded, or pass commands on again
 
     `~/hold`, std_srvs/srv/SetBool.
     """
-    control_timer: Timer
-    """Calls `on_control_timer`."""
+    diagnostics_timer: Timer
+    """Calls `on_diagnostics_timer`."""
 
     def __init__(self, node_name: str = "joint_controller", **options: Any) -> None:
         """Take the options of `rclpy.node.Node`. Raises ParametersError for parameters that break rules."""
@@ -94,11 +134,11 @@ class JointControllerBase(LifecycleNode, ABC):
         self.parameters = declare_parameters(self)
         self.add_post_set_parameters_callback(self._replace_parameters)
         self._configured = ExitStack()
-        self.control_timer = self.create_timer(
-            self.parameters.control_period,
-            self.on_control_timer,
+        self.diagnostics_timer = self.create_timer(
+            1.0,
+            self.on_diagnostics_timer,
         )
-        self.control_timer.cancel()
+        self.diagnostics_timer.cancel()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Create all entities; an override does first what may fail, and then calls this one."""
@@ -112,6 +152,24 @@ class JointControllerBase(LifecycleNode, ABC):
             self.destroy_lifecycle_publisher,
             self.joint_commands_publisher,
         )
+        self.servos_standby_publisher = self.create_lifecycle_publisher(
+            String,
+            "/servos/standby",
+            SERVOS_STANDBY_PUBLISHER_QOS,
+        )
+        self._configured.callback(
+            self.destroy_lifecycle_publisher,
+            self.servos_standby_publisher,
+        )
+        self.diagnostics_publisher = self.create_lifecycle_publisher(
+            DiagnosticArray,
+            "/diagnostics",
+            DIAGNOSTICS_PUBLISHER_QOS,
+        )
+        self._configured.callback(
+            self.destroy_lifecycle_publisher,
+            self.diagnostics_publisher,
+        )
         self.whole_body_position_controller_commands_subscription = self.create_subscription(
             Float64MultiArray,
             "/whole_body_position_controller/commands",
@@ -122,25 +180,45 @@ class JointControllerBase(LifecycleNode, ABC):
             self.destroy_subscription,
             self.whole_body_position_controller_commands_subscription,
         )
-        self.joint_states_subscription = self.create_subscription(
+        self.joint_encoders_subscription = self.create_subscription(
             JointState,
-            "/joint_states",
-            self.on_joint_states,
-            JOINT_STATES_SUBSCRIPTION_QOS,
+            "/joint_encoders",
+            self.on_joint_encoders,
+            JOINT_ENCODERS_SUBSCRIPTION_QOS,
         )
         self._configured.callback(
             self.destroy_subscription,
-            self.joint_states_subscription,
+            self.joint_encoders_subscription,
         )
-        self.emergency_stop_subscription = self.create_subscription(
-            EmergencyStop,
-            "/emergency_stop",
-            self.on_emergency_stop,
-            EMERGENCY_STOP_SUBSCRIPTION_QOS,
+        self.imu_data_subscription = self.create_subscription(
+            Imu,
+            "/imu/data",
+            self.on_imu_data,
+            IMU_DATA_SUBSCRIPTION_QOS,
         )
         self._configured.callback(
             self.destroy_subscription,
-            self.emergency_stop_subscription,
+            self.imu_data_subscription,
+        )
+        self.l_foot_wrench_subscription = self.create_subscription(
+            WrenchStamped,
+            "/l_foot/wrench",
+            self.on_l_foot_wrench,
+            L_FOOT_WRENCH_SUBSCRIPTION_QOS,
+        )
+        self._configured.callback(
+            self.destroy_subscription,
+            self.l_foot_wrench_subscription,
+        )
+        self.r_foot_wrench_subscription = self.create_subscription(
+            WrenchStamped,
+            "/r_foot/wrench",
+            self.on_r_foot_wrench,
+            R_FOOT_WRENCH_SUBSCRIPTION_QOS,
+        )
+        self._configured.callback(
+            self.destroy_subscription,
+            self.r_foot_wrench_subscription,
         )
         self.hold_service = self.create_service(
             SetBool,
@@ -157,12 +235,12 @@ class JointControllerBase(LifecycleNode, ABC):
         """Let publishers publish and timers run; an override does first what may fail, then calls this one."""
         answer = super().on_activate(state)
         if answer == TransitionCallbackReturn.SUCCESS:
-            self.control_timer.reset()
+            self.diagnostics_timer.reset()
         return answer
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop timers and silence publishers; an override calls this one last."""
-        self.control_timer.cancel()
+        self.diagnostics_timer.cancel()
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -184,47 +262,77 @@ class JointControllerBase(LifecycleNode, ABC):
         return answer
 
     def _end(self) -> None:
-        self.control_timer.cancel()
+        self.diagnostics_timer.cancel()
         self._configured.close()
 
     def publish_joint_commands(self, message: JointState) -> None:
         """Publish on `/joint_commands`.
 
-        Set-points for the motors, by joint name [rad]
+        Set-points for the motors, by joint name [rad], with the stamp of the readings that they answer
         """
         self.joint_commands_publisher.publish(message)
+
+    def publish_servos_standby(self, message: String) -> None:
+        """Publish on `/servos/standby`.
+
+        Why the robot stands on its own; empty while commands are passed on
+        """
+        self.servos_standby_publisher.publish(message)
+
+    def publish_diagnostics(self, message: DiagnosticArray) -> None:
+        """Publish on `/diagnostics`.
+
+        How many set-points were refused, and why the last one was
+        """
+        self.diagnostics_publisher.publish(message)
 
     @abstractmethod
     def on_whole_body_position_controller_commands(self, message: Float64MultiArray) -> None:
         """Take a message from `/whole_body_position_controller/commands`.
 
-        Position set-points [rad] in the order of the parameter joints
+        Position set-points [rad] of all joints, in the model's order. dim[0] is the joints; dim[1] is
+        labelled `stamp` and holds the stamp of the sensor values that the set-points answer, as size [s]
+        and stride [ns]
         """
 
     @abstractmethod
-    def on_joint_states(self, message: JointState) -> None:
-        """Take a message from `/joint_states`.
+    def on_joint_encoders(self, message: JointState) -> None:
+        """Take a message from `/joint_encoders`.
 
-        Angles [rad] and velocities [rad/s] as measured
+        Angles [rad] and velocities [rad/s] as measured, to stand by
         """
 
     @abstractmethod
-    def on_emergency_stop(self, message: EmergencyStop) -> None:
-        """Take a message from `/emergency_stop`.
+    def on_imu_data(self, message: Imu) -> None:
+        """Take a message from `/imu/data`.
 
-        Overrides every command
+        Orientation and angular velocity of the pelvis, to stand by
+        """
+
+    @abstractmethod
+    def on_l_foot_wrench(self, message: WrenchStamped) -> None:
+        """Take a message from `/l_foot/wrench`.
+
+        Force [N] and torque [N m] of the floor on the left ankle, to stand by
+        """
+
+    @abstractmethod
+    def on_r_foot_wrench(self, message: WrenchStamped) -> None:
+        """Take a message from `/r_foot/wrench`.
+
+        Force [N] and torque [N m] of the floor on the right ankle, to stand by
         """
 
     @abstractmethod
     def handle_hold(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Answer a request to `~/hold`.
 
-        Hold the present posture whatever is commanded, or stop holding it
+        Let the robot stand on its own whatever is commanded, or pass commands on again
         """
 
     @abstractmethod
-    def on_control_timer(self) -> None:
-        """Called every `control_period` [s]."""
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
 
     def on_parameters_changed(self, parameters: JointControllerParameters) -> None:
         """Called after a change of parameters, which are `self.parameters` already; does nothing."""

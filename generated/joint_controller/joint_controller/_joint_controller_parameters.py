@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import ParameterDescriptor, SetParametersResult
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -17,46 +17,18 @@ class ParametersError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class LimitsParameters:
-    """The parameters `limits.*`."""
-
-    lower: tuple[float, ...]
-    """Lower ends of the joints' ranges, in their order [rad]
-
-    Must have more than 0 elements. Each element must be from -3.2 to 3.2.
-    """
-    upper: tuple[float, ...]
-    """Upper ends of the joints' ranges, in their order [rad]
-
-    Must have more than 0 elements. Each element must be from -3.2 to 3.2.
-    """
-    velocity: float
-    """Largest change of a set-point [rad/s]
-
-    Must be from 0.1 to 50.0.
-    """
-
-
-@dataclass(frozen=True, slots=True)
 class JointControllerParameters:
     """The parameters of the node joint_controller."""
 
-    control_period: float
-    """Time between two commands [s]
+    model_file: str
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours
 
-    Must be from 0.001 to 0.1. Can be set at start only.
+    Can be set at start only.
     """
-    joints: tuple[str, ...]
-    """Joints in the order of the commands
+    joint_map: str
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
 
-    Must not be empty. Must not hold a value twice. Can be set at start only.
-    """
-    limits: LimitsParameters
-    """The parameters `limits.*`."""
-    command_timeout: float
-    """Age at which a command counts as late [s]
-
-    Must be greater than 0.0.
+    Can be set at start only.
     """
 
 
@@ -92,14 +64,8 @@ def read_parameters(node: Node) -> JointControllerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return JointControllerParameters(
-        control_period=values["control_period"],
-        joints=values["joints"],
-        limits=LimitsParameters(
-            lower=values["limits.lower"],
-            upper=values["limits.upper"],
-            velocity=values["limits.velocity"],
-        ),
-        command_timeout=values["command_timeout"],
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
     )
 
 
@@ -135,94 +101,30 @@ def _problem(name: str, value: Any) -> str:
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
         (
-            "control_period",
-            Parameter.Type.DOUBLE,
-            0.01,
+            "model_file",
+            Parameter.Type.STRING,
+            "",
             ParameterDescriptor(
-                description="Time between two commands [s]",
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
                 read_only=True,
-                additional_constraints="must be from 0.001 to 0.1",
-                floating_point_range=[FloatingPointRange(from_value=0.001, to_value=0.1)],
             ),
         ),
         (
-            "joints",
-            Parameter.Type.STRING_ARRAY,
-            ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "l_ankle_roll"],
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
             ParameterDescriptor(
-                description="Joints in the order of the commands",
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
                 read_only=True,
-                additional_constraints="must not be empty; must not hold a value twice",
-            ),
-        ),
-        (
-            "limits.lower",
-            Parameter.Type.DOUBLE_ARRAY,
-            [-1.2, -0.7, -2.0, -0.05, -1.0, -0.5],
-            ParameterDescriptor(
-                description="Lower ends of the joints' ranges, in their order [rad]",
-                additional_constraints="must have more than 0 elements; each element must be from -3.2 to 3.2",
-            ),
-        ),
-        (
-            "limits.upper",
-            Parameter.Type.DOUBLE_ARRAY,
-            [1.2, 0.7, 1.2, 2.4, 0.8, 0.5],
-            ParameterDescriptor(
-                description="Upper ends of the joints' ranges, in their order [rad]",
-                additional_constraints="must have more than 0 elements; each element must be from -3.2 to 3.2",
-            ),
-        ),
-        (
-            "limits.velocity",
-            Parameter.Type.DOUBLE,
-            12.0,
-            ParameterDescriptor(
-                description="Largest change of a set-point [rad/s]",
-                additional_constraints="must be from 0.1 to 50.0",
-                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=50.0)],
-            ),
-        ),
-        (
-            "command_timeout",
-            Parameter.Type.DOUBLE,
-            0.1,
-            ParameterDescriptor(
-                description="Age at which a command counts as late [s]",
-                additional_constraints="must be greater than 0.0",
             ),
         ),
     ]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
-    "control_period": (
-        (lambda value: 0.001 <= value <= 0.1, "must be from 0.001 to 0.1"),
-    ),
-    "joints": (
-        (lambda value: len(value) > 0, "must not be empty"),
-        (lambda value: len(set(value)) == len(value), "must not hold a value twice"),
-    ),
-    "limits.lower": (
-        (lambda value: len(value) > 0, "must have more than 0 elements"),
-        (lambda value: all(-3.2 <= element <= 3.2 for element in value), "each element must be from -3.2 to 3.2"),
-    ),
-    "limits.upper": (
-        (lambda value: len(value) > 0, "must have more than 0 elements"),
-        (lambda value: all(-3.2 <= element <= 3.2 for element in value), "each element must be from -3.2 to 3.2"),
-    ),
-    "limits.velocity": (
-        (lambda value: 0.1 <= value <= 50.0, "must be from 0.1 to 50.0"),
-    ),
-    "command_timeout": (
-        (lambda value: value > 0.0, "must be greater than 0.0"),
-    ),
 }
 _CHECKS: dict[str, tuple[Callable[[Any], object], ...]] = {
 }
 _CONVERTERS: dict[str, Callable[[Any], Any]] = {
-    "joints": tuple,
-    "limits.lower": tuple,
-    "limits.upper": tuple,
 }
 # fmt: on

@@ -28,7 +28,8 @@ pytest.importorskip("hypothesis", reason="it is not installed: pip install 'ifge
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 import builtin_interfaces.msg
-import humanoid_interfaces.msg
+import diagnostic_msgs.msg
+import geometry_msgs.msg
 import sensor_msgs.msg
 import std_msgs.msg
 import std_srvs.srv
@@ -89,10 +90,12 @@ def ignore(*_: Any) -> None:
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_whole_body_position_controller_commands": idle,
-    "on_joint_states": idle,
-    "on_emergency_stop": idle,
+    "on_joint_encoders": idle,
+    "on_imu_data": idle,
+    "on_l_foot_wrench": idle,
+    "on_r_foot_wrench": idle,
     "handle_hold": idle,
-    "on_control_timer": idle,
+    "on_diagnostics_timer": idle,
     "on_parameters_changed": ignore,
 }
 
@@ -192,8 +195,8 @@ UINT32S = st.integers(0, 4294967295)
 CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd\ufeff🤖\U0010ffff"
 STRINGS = st.text(CHARACTERS, max_size=12)
 FLOAT64S = st.floats(allow_nan=False)
+OCTETS = st.binary(min_size=1, max_size=1)
 BOOLEANS = st.booleans()
-UINT8S = st.integers(0, 255)
 
 # The values of messages, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
@@ -205,6 +208,21 @@ sensor_msgs_msg_JointState = st.builds(
     position=some(FLOAT64S),
     velocity=some(FLOAT64S),
     effort=some(FLOAT64S),
+)
+std_msgs_msg_String = st.builds(std_msgs.msg.String, data=STRINGS)
+diagnostic_msgs_msg_KeyValue = st.builds(diagnostic_msgs.msg.KeyValue, key=STRINGS, value=STRINGS)
+diagnostic_msgs_msg_DiagnosticStatus = st.builds(
+    diagnostic_msgs.msg.DiagnosticStatus,
+    level=OCTETS,
+    name=STRINGS,
+    message=STRINGS,
+    hardware_id=STRINGS,
+    values=some(diagnostic_msgs_msg_KeyValue),
+)
+diagnostic_msgs_msg_DiagnosticArray = st.builds(
+    diagnostic_msgs.msg.DiagnosticArray,
+    header=std_msgs_msg_Header,
+    status=some(diagnostic_msgs_msg_DiagnosticStatus),
 )
 std_msgs_msg_MultiArrayDimension = st.builds(
     std_msgs.msg.MultiArrayDimension,
@@ -222,13 +240,33 @@ std_msgs_msg_Float64MultiArray = st.builds(
     layout=std_msgs_msg_MultiArrayLayout,
     data=some(FLOAT64S),
 )
-humanoid_interfaces_msg_EmergencyStop = st.builds(
-    humanoid_interfaces.msg.EmergencyStop,
+geometry_msgs_msg_Quaternion = st.builds(
+    geometry_msgs.msg.Quaternion,
+    x=FLOAT64S,
+    y=FLOAT64S,
+    z=FLOAT64S,
+    w=FLOAT64S,
+)
+geometry_msgs_msg_Vector3 = st.builds(geometry_msgs.msg.Vector3, x=FLOAT64S, y=FLOAT64S, z=FLOAT64S)
+sensor_msgs_msg_Imu = st.builds(
+    sensor_msgs.msg.Imu,
     header=std_msgs_msg_Header,
-    active=BOOLEANS,
-    cause=st.sampled_from([0, 1, 2, 3, 4, 5]) | UINT8S,
-    source=st.text(CHARACTERS, max_size=128) | st.just("x" * 128),
-    reason=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    orientation=geometry_msgs_msg_Quaternion,
+    orientation_covariance=exactly(9, FLOAT64S),
+    angular_velocity=geometry_msgs_msg_Vector3,
+    angular_velocity_covariance=exactly(9, FLOAT64S),
+    linear_acceleration=geometry_msgs_msg_Vector3,
+    linear_acceleration_covariance=exactly(9, FLOAT64S),
+)
+geometry_msgs_msg_Wrench = st.builds(
+    geometry_msgs.msg.Wrench,
+    force=geometry_msgs_msg_Vector3,
+    torque=geometry_msgs_msg_Vector3,
+)
+geometry_msgs_msg_WrenchStamped = st.builds(
+    geometry_msgs.msg.WrenchStamped,
+    header=std_msgs_msg_Header,
+    wrench=geometry_msgs_msg_Wrench,
 )
 std_srvs_srv_SetBool_Request = st.builds(std_srvs.srv.SetBool.Request, data=BOOLEANS)
 std_srvs_srv_SetBool_Response = st.builds(std_srvs.srv.SetBool.Response, success=BOOLEANS, message=STRINGS)
@@ -263,6 +301,24 @@ PUBLISHERS = [
         "joint_commands_publisher",
         sensor_msgs_msg_JointState,
     ),
+    Topic(
+        "/servos/standby",
+        "std_msgs/msg/String",
+        std_msgs.msg.String,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        "publish_servos_standby",
+        "servos_standby_publisher",
+        std_msgs_msg_String,
+    ),
+    Topic(
+        "/diagnostics",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        diagnostic_msgs.msg.DiagnosticArray,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_diagnostics",
+        "diagnostics_publisher",
+        diagnostic_msgs_msg_DiagnosticArray,
+    ),
 ]
 SUBSCRIPTIONS = [
     Topic(
@@ -275,22 +331,40 @@ SUBSCRIPTIONS = [
         std_msgs_msg_Float64MultiArray,
     ),
     Topic(
-        "/joint_states",
+        "/joint_encoders",
         "sensor_msgs/msg/JointState",
         sensor_msgs.msg.JointState,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE, deadline=Duration(nanoseconds=20_000_000)),
-        "on_joint_states",
-        "joint_states_subscription",
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=5, reliability=ReliabilityPolicy.BEST_EFFORT),
+        "on_joint_encoders",
+        "joint_encoders_subscription",
         sensor_msgs_msg_JointState,
     ),
     Topic(
-        "/emergency_stop",
-        "humanoid_interfaces/msg/EmergencyStop",
-        humanoid_interfaces.msg.EmergencyStop,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
-        "on_emergency_stop",
-        "emergency_stop_subscription",
-        humanoid_interfaces_msg_EmergencyStop,
+        "/imu/data",
+        "sensor_msgs/msg/Imu",
+        sensor_msgs.msg.Imu,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+        "on_imu_data",
+        "imu_data_subscription",
+        sensor_msgs_msg_Imu,
+    ),
+    Topic(
+        "/l_foot/wrench",
+        "geometry_msgs/msg/WrenchStamped",
+        geometry_msgs.msg.WrenchStamped,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+        "on_l_foot_wrench",
+        "l_foot_wrench_subscription",
+        geometry_msgs_msg_WrenchStamped,
+    ),
+    Topic(
+        "/r_foot/wrench",
+        "geometry_msgs/msg/WrenchStamped",
+        geometry_msgs.msg.WrenchStamped,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+        "on_r_foot_wrench",
+        "r_foot_wrench_subscription",
+        geometry_msgs_msg_WrenchStamped,
     ),
 ]
 # fmt: on
@@ -441,56 +515,22 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
-        "control_period",
-        Parameter.Type.DOUBLE,
-        0.01,
-        [0.01, 0.001, 0.1, 0.0505, 0.002, 0.098],
-        [0.0, 0.102],
-        description="Time between two commands [s]",
-        read_only=True,
-        range=(0.001, 0.1),
-    ),
-    ParameterCase(
-        "joints",
-        Parameter.Type.STRING_ARRAY,
-        ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "l_ankle_roll"],
-        [["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "l_ankle_roll"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "a"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "b"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "c"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "d"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch"]],
-        [[], ["l_hip_yaw", "l_hip_yaw", "l_hip_yaw", "l_hip_yaw", "l_hip_yaw", "l_hip_yaw"]],
-        description="Joints in the order of the commands",
+        "model_file",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
         read_only=True,
     ),
     ParameterCase(
-        "limits.lower",
-        Parameter.Type.DOUBLE_ARRAY,
-        [-1.2, -0.7, -2.0, -0.05, -1.0, -0.5],
-        [[-1.2, -0.7, -2.0, -0.05, -1.0, -0.5], [-1.2], [-0.7], [-2.0], [-0.05], [-1.0]],
-        [[], [-3.264], [3.264]],
-        description="Lower ends of the joints' ranges, in their order [rad]",
-    ),
-    ParameterCase(
-        "limits.upper",
-        Parameter.Type.DOUBLE_ARRAY,
-        [1.2, 0.7, 1.2, 2.4, 0.8, 0.5],
-        [[1.2, 0.7, 1.2, 2.4, 0.8, 0.5], [1.2], [0.7], [2.4], [0.8], [0.5]],
-        [[], [-3.264], [3.264]],
-        description="Upper ends of the joints' ranges, in their order [rad]",
-    ),
-    ParameterCase(
-        "limits.velocity",
-        Parameter.Type.DOUBLE,
-        12.0,
-        [12.0, 0.1, 50.0, 25.05, 0.102, 49.0],
-        [0.098, 51.0],
-        description="Largest change of a set-point [rad/s]",
-        range=(0.1, 50.0),
-    ),
-    ParameterCase(
-        "command_timeout",
-        Parameter.Type.DOUBLE,
-        0.1,
-        [0.1, 0.001],
-        [0.0],
-        description="Age at which a command counts as late [s]",
+        "joint_map",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+        read_only=True,
     ),
 ]
 # fmt: on
@@ -588,12 +628,12 @@ class TimerCase:
 # fmt: off
 TIMERS = [
     TimerCase(
-        "on_control_timer",
-        "control_timer",
-        0.01,
+        "on_diagnostics_timer",
+        "diagnostics_timer",
+        1.0,
         True,
         [
-            ("publish_joint_commands", sensor_msgs.msg.JointState, "/joint_commands", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE), 0.0),
+            ("publish_diagnostics", diagnostic_msgs.msg.DiagnosticArray, "/diagnostics", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE), 0.0),
         ],
     ),
 ]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
-from rclpy.duration import Duration
+from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 from sensor_msgs.msg import JointState
@@ -24,8 +24,11 @@ JOINT_STATES_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.BEST_EFFORT,
-    durability=DurabilityPolicy.VOLATILE,
-    deadline=Duration(nanoseconds=20_000_000),
+)
+DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
 )
 JOINT_ENCODERS_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -35,8 +38,8 @@ JOINT_ENCODERS_SUBSCRIPTION_QOS = QoSProfile(
 
 
 class JointStatePublisherBase(Node, ABC):
-    """Collects what the joint drivers measure and publishes it in one fixed order at a steady rate. A
-    joint that no driver reports keeps its last value.
+    """Collects what the joint drivers measure and publishes it in one fixed order, each time that all of
+    them have reported. A joint whose driver falls silent keeps its last value.
     """
 
     parameters: JointStatePublisherParameters
@@ -47,13 +50,18 @@ class JointStatePublisherBase(Node, ABC):
 
     `/joint_states`, sensor_msgs/msg/JointState.
     """
+    diagnostics_publisher: Publisher[DiagnosticArray]
+    """How many reports of drivers were refused, and which joints are stale
+
+    `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
+    """
     joint_encoders_subscription: Subscription[JointState]
     """Partial states, one message per driver
 
     `/joint_encoders`, sensor_msgs/msg/JointState.
     """
-    publish_timer: Timer
-    """Calls `on_publish_timer`."""
+    diagnostics_timer: Timer
+    """Calls `on_diagnostics_timer`."""
 
     def __init__(self, node_name: str = "joint_state_publisher", **options: Any) -> None:
         """Take the options of `rclpy.node.Node`. Raises ParametersError for parameters that break rules."""
@@ -65,15 +73,20 @@ class JointStatePublisherBase(Node, ABC):
             "/joint_states",
             JOINT_STATES_PUBLISHER_QOS,
         )
+        self.diagnostics_publisher = self.create_publisher(
+            DiagnosticArray,
+            "/diagnostics",
+            DIAGNOSTICS_PUBLISHER_QOS,
+        )
         self.joint_encoders_subscription = self.create_subscription(
             JointState,
             "/joint_encoders",
             self.on_joint_encoders,
             JOINT_ENCODERS_SUBSCRIPTION_QOS,
         )
-        self.publish_timer = self.create_timer(
-            0.01,
-            self.on_publish_timer,
+        self.diagnostics_timer = self.create_timer(
+            1.0,
+            self.on_diagnostics_timer,
         )
 
     def publish_joint_states(self, message: JointState) -> None:
@@ -83,6 +96,13 @@ class JointStatePublisherBase(Node, ABC):
         """
         self.joint_states_publisher.publish(message)
 
+    def publish_diagnostics(self, message: DiagnosticArray) -> None:
+        """Publish on `/diagnostics`.
+
+        How many reports of drivers were refused, and which joints are stale
+        """
+        self.diagnostics_publisher.publish(message)
+
     @abstractmethod
     def on_joint_encoders(self, message: JointState) -> None:
         """Take a message from `/joint_encoders`.
@@ -91,8 +111,8 @@ class JointStatePublisherBase(Node, ABC):
         """
 
     @abstractmethod
-    def on_publish_timer(self) -> None:
-        """Called every 0.01 s."""
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
 
     def on_parameters_changed(self, parameters: JointStatePublisherParameters) -> None:
         """Called after a change of parameters, which are `self.parameters` already; does nothing."""

@@ -21,12 +21,13 @@ class JointStatePublisherParameters:
     """The parameters of the node joint_state_publisher."""
 
     joints: tuple[str, ...]
-    """Names and order of the joints that are published
+    """Names and order of the joints that are published; empty for all, in the order in which drivers first
+    report them
 
-    Must not be empty. Must not hold a value twice. Can be set at start only.
+    Must not hold a value twice. Can be set at start only.
     """
     stale_after: float
-    """Age at which a joint's last value is reported as stale [s]
+    """Silence of a driver after which the others are no longer held up by it [s]
 
     Must be from 0.02 to 10.0.
     """
@@ -103,11 +104,11 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "joints",
             Parameter.Type.STRING_ARRAY,
-            ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "l_ankle_roll"],
+            [],
             ParameterDescriptor(
-                description="Names and order of the joints that are published",
+                description="Names and order of the joints that are published; empty for all, in the order in which drivers first report them",
                 read_only=True,
-                additional_constraints="must not be empty; must not hold a value twice",
+                additional_constraints="must not hold a value twice",
             ),
         ),
         (
@@ -115,7 +116,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.DOUBLE,
             0.5,
             ParameterDescriptor(
-                description="Age at which a joint's last value is reported as stale [s]",
+                description="Silence of a driver after which the others are no longer held up by it [s]",
                 additional_constraints="must be from 0.02 to 10.0",
                 floating_point_range=[FloatingPointRange(from_value=0.02, to_value=10.0)],
             ),
@@ -125,7 +126,6 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "joints": (
-        (lambda value: len(value) > 0, "must not be empty"),
         (lambda value: len(set(value)) == len(value), "must not hold a value twice"),
     ),
     "stale_after": (

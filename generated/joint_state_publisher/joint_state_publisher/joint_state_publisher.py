@@ -1,16 +1,15 @@
-"""The node joint_state_publisher: written once by ifgen, yours from then on.
-
-`ifgen run -m joint_state_publisher.joint_state_publisher` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node joint_state_publisher: what all joint drivers measure, in one message."""
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
-import rclpy
-from rclpy.executors import ExternalShutdownException
+import numpy as np
+from humanoid.data import SECOND
+from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
+from humanoid.ros.running import run
+from humanoid.sensing.joints import JointCollector
 from sensor_msgs.msg import JointState
 
 from joint_state_publisher._joint_state_publisher_base import JointStatePublisherBase
@@ -18,41 +17,36 @@ from joint_state_publisher._joint_state_publisher_parameters import ParametersEr
 
 
 class JointStatePublisher(JointStatePublisherBase):
-    """Collects what the joint drivers measure and publishes it in one fixed order at a steady rate. A
-    joint that no driver reports keeps its last value.
-    """
+    """Publishes the states of all joints each time that every driver has reported."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
+        stale_after = round(self.parameters.stale_after * SECOND)
+        self._joints = JointCollector(self.parameters.joints, stale_after)
+        self._health = Health("joint_state_publisher: drivers", self.get_logger(), "reports")
 
     def on_joint_encoders(self, message: JointState) -> None:
-        """Take a message from `/joint_encoders`.
+        """Take what a driver measures."""
+        stamp = messages.nanoseconds(message.header.stamp)
+        values = [np.asarray(part) for part in (message.position, message.velocity, message.effort)]
+        try:
+            states = self._joints.take(stamp, message.name, *values)
+        except ValueError as error:
+            self._health.takes("reports", f"/joint_encoders: {error}")
+            return
+        if states is not None:
+            self.publish_joint_states(messages.joint_states(states, self._joints.names))
 
-        Partial states, one message per driver
-        """
-        self.get_logger().debug("message on /joint_encoders")
-
-    def on_publish_timer(self) -> None:
-        """Called every 0.01 s."""
-        self.publish_joint_states(JointState())
+    def on_diagnostics_timer(self) -> None:
+        """Report what was refused, and which joints are silent."""
+        stale = self._joints.stale
+        problem = f"no driver reports {', '.join(stale)}" if stale else ""
+        self.publish_diagnostics(self._health.report(self.get_clock().now().nanoseconds, problem))
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = JointStatePublisher()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"joint_state_publisher: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(JointStatePublisher, args, ParametersError)
 
 
 if __name__ == "__main__":

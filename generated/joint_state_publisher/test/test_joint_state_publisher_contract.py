@@ -28,6 +28,7 @@ pytest.importorskip("hypothesis", reason="it is not installed: pip install 'ifge
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 import builtin_interfaces.msg
+import diagnostic_msgs.msg
 import sensor_msgs.msg
 import std_msgs.msg
 from hypothesis import HealthCheck, Phase, configuration, given, settings
@@ -37,7 +38,7 @@ from joint_state_publisher.joint_state_publisher import JointStatePublisher
 from rcl_interfaces.srv import SetParametersAtomically
 from rclpy.duration import Duration
 from rclpy.parameter import Parameter
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos import HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 EXAMPLES = settings(
     max_examples=int(os.environ.get("HYPOTHESIS_EXAMPLES", "5")),
@@ -75,7 +76,7 @@ def ignore(*_: Any) -> None:
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_joint_encoders": idle,
-    "on_publish_timer": idle,
+    "on_diagnostics_timer": idle,
     "on_parameters_changed": ignore,
 }
 
@@ -174,6 +175,7 @@ UINT32S = st.integers(0, 4294967295)
 CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd\ufeff🤖\U0010ffff"
 STRINGS = st.text(CHARACTERS, max_size=12)
 FLOAT64S = st.floats(allow_nan=False)
+OCTETS = st.binary(min_size=1, max_size=1)
 
 # The values of messages, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
@@ -185,6 +187,20 @@ sensor_msgs_msg_JointState = st.builds(
     position=some(FLOAT64S),
     velocity=some(FLOAT64S),
     effort=some(FLOAT64S),
+)
+diagnostic_msgs_msg_KeyValue = st.builds(diagnostic_msgs.msg.KeyValue, key=STRINGS, value=STRINGS)
+diagnostic_msgs_msg_DiagnosticStatus = st.builds(
+    diagnostic_msgs.msg.DiagnosticStatus,
+    level=OCTETS,
+    name=STRINGS,
+    message=STRINGS,
+    hardware_id=STRINGS,
+    values=some(diagnostic_msgs_msg_KeyValue),
+)
+diagnostic_msgs_msg_DiagnosticArray = st.builds(
+    diagnostic_msgs.msg.DiagnosticArray,
+    header=std_msgs_msg_Header,
+    status=some(diagnostic_msgs_msg_DiagnosticStatus),
 )
 # fmt: on
 
@@ -212,10 +228,19 @@ PUBLISHERS = [
         "/joint_states",
         "sensor_msgs/msg/JointState",
         sensor_msgs.msg.JointState,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE, deadline=Duration(nanoseconds=20_000_000)),
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
         "publish_joint_states",
         "joint_states_publisher",
         sensor_msgs_msg_JointState,
+    ),
+    Topic(
+        "/diagnostics",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        diagnostic_msgs.msg.DiagnosticArray,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_diagnostics",
+        "diagnostics_publisher",
+        diagnostic_msgs_msg_DiagnosticArray,
     ),
 ]
 SUBSCRIPTIONS = [
@@ -312,10 +337,10 @@ PARAMETERS = [
     ParameterCase(
         "joints",
         Parameter.Type.STRING_ARRAY,
-        ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "l_ankle_roll"],
-        [["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "l_ankle_roll"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "a"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "b"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "c"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch", "d"], ["l_hip_yaw", "l_hip_roll", "l_hip_pitch", "l_knee", "l_ankle_pitch"]],
-        [[], ["l_hip_yaw", "l_hip_yaw", "l_hip_yaw", "l_hip_yaw", "l_hip_yaw", "l_hip_yaw"]],
-        description="Names and order of the joints that are published",
+        [],
+        [[], ["a"], ["b"], ["c"], ["d"], ["a", "b"]],
+        [["a", "a"]],
+        description="Names and order of the joints that are published; empty for all, in the order in which drivers first report them",
         read_only=True,
     ),
     ParameterCase(
@@ -324,7 +349,7 @@ PARAMETERS = [
         0.5,
         [0.5, 0.02, 10.0, 5.01, 0.021, 9.8],
         [0.019, 10.2],
-        description="Age at which a joint's last value is reported as stale [s]",
+        description="Silence of a driver after which the others are no longer held up by it [s]",
         range=(0.02, 10.0),
     ),
 ]
@@ -423,12 +448,12 @@ class TimerCase:
 # fmt: off
 TIMERS = [
     TimerCase(
-        "on_publish_timer",
-        "publish_timer",
-        0.01,
+        "on_diagnostics_timer",
+        "diagnostics_timer",
+        1.0,
         True,
         [
-            ("publish_joint_states", sensor_msgs.msg.JointState, "/joint_states", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE, deadline=Duration(nanoseconds=20_000_000)), 0.02),
+            ("publish_diagnostics", diagnostic_msgs.msg.DiagnosticArray, "/diagnostics", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE), 0.0),
         ],
     ),
 ]

@@ -1,90 +1,214 @@
-"""The node navigation_action_server: written once by ifgen, yours from then on.
-
-`ifgen run -m navigation_action_server.navigation_action_server` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node navigation_action_server: walks to a goal; a newer goal takes over."""
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
-import rclpy
+from humanoid import data
+from humanoid.planning.footsteps import PlanStatus, StepLimits, shorter
+from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
+from humanoid.robot.scene import GROUND
+from humanoid.ros import messages
+from humanoid.ros.news import News
+from humanoid.ros.running import run
 from humanoid_interfaces.action import WalkTo
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
+from humanoid_interfaces.srv import PlanFootsteps
 from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
-from rclpy.executors import ExternalShutdownException
+from rclpy.task import Future
 
 from navigation_action_server._navigation_action_server_base import NavigationActionServerBase
 from navigation_action_server._navigation_action_server_parameters import ParametersError
 
+_FRAMES = ("", "odom")
+_SILENCE = 500_000_000  # ns of silence of the controller after which a goal is given up
+_BUSY = "I am already walking to another goal, and second_goal says reject"
+_PLANNED = (int(PlanStatus.PLANNED), int(PlanStatus.ALREADY_THERE))
+
 
 class NavigationActionServer(NavigationActionServerBase):
-    """Walks to a pose. It requests footsteps, watches the robot take them, plans again when the robot has
-    strayed, and stops it within 2.5 s when the goal is cancelled. It walks to one goal at a time: a
-    newer goal takes over or is rejected, as `second_goal` says.
-    """
+    """Asks the footstep server about a goal before it accepts it, and ends the goal by the gait state."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
-        self.publish_footsteps_plan(FootstepPlan())
+        self._gait: data.GaitState | None = None
+        self._news = News(self)  # gait states
+        self._stop = data.EmergencyStop(active=False)
+        self._walk: _Walk | None = None
+        self._plan: data.FootstepPlan | None = None
+        self._sent = FootstepPlan()  # the same state as the original message
+        self._tick: WalkTick | None = None
 
     async def on_gait_state(self, message: GaitState) -> None:
-        """Take a message from `/gait_state`.
-
-        Where the feet are and which step is being taken
-        """
-        self.get_logger().debug("message on /gait_state")
+        """Check how far the walk has come, and plan again or end it."""
+        self._gait = messages.read_gait_state(message)
+        self._news.come()
+        walk = self._walk
+        if walk is None:
+            return
+        if walk.handle.is_cancel_requested:
+            walk.navigation.cancel()
+        self._tick = tick = walk.navigation.update(self._gait)
+        if tick.plan is not None:
+            self._send(tick.plan)
+        elif tick.stop and not walk.stopping:
+            walk.stopping = True
+            self._halt()
+        if tick.result is not None:
+            self._end(walk, tick.result)
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
-        """Take a message from `/emergency_stop`.
-
-        Ends the goal and refuses new ones while it is active
-        """
-        self.get_logger().debug("message on /emergency_stop")
+        """Remember whether goals can be accepted; the controller stops on its own and reports that."""
+        self._stop = messages.read_emergency_stop(message)
 
     async def accept_walk_to(self, goal: WalkTo.Goal) -> GoalResponse:
-        """Decide whether to accept a goal for `/walk_to`."""
+        """Accept goals that the robot can reach; the log says why another is rejected."""
+        problem = await self._problem(goal)
+        if problem:
+            self.get_logger().warning(f"goal rejected: {problem}")
+            return GoalResponse.REJECT
         return GoalResponse.ACCEPT
 
     async def cancel_walk_to(self, goal_handle: ServerGoalHandle) -> CancelResponse:
-        """Decide whether a goal of `/walk_to` may be cancelled."""
+        """Any goal may be cancelled."""
         return CancelResponse.ACCEPT
 
     async def execute_walk_to(self, goal_handle: ServerGoalHandle) -> WalkTo.Result:
-        """Execute a goal of `/walk_to`.
-
-        Walk to a pose; a cancel stops with the feet side by side
-        """
-        goal_handle.publish_feedback(WalkTo.Feedback())
-        if goal_handle.is_cancel_requested:
+        """Walk until the goal is reached, given up, cancelled or taken over."""
+        assert self._gait is not None, "accepted without a gait state"
+        goal: WalkTo.Goal = goal_handle.request
+        if self._walk is not None:
+            if self.parameters.second_goal == "reject":  # both were checked before either began
+                return self._refuse(goal_handle, _BUSY)
+            before = self._walk
+            before.navigation.preempt()
+            result = before.navigation.update(self._gait).result
+            assert result is not None, "a preempted goal ends at once"
+            self._end(before, result)
+        x, y, yaw = (float(part) for part in messages.planar(goal.target.pose))
+        values = self.parameters
+        navigation = Navigation(
+            (x, y, yaw),
+            self._gait,
+            self._plan,
+            limits=shorter(StepLimits(), goal.max_step_length),
+            ground=GROUND,
+            tolerance=GoalTolerance(
+                goal.position_tolerance or values.tolerance.position,
+                goal.yaw_tolerance or values.tolerance.yaw,
+            ),
+            replan_distance=values.replan_distance,
+        )
+        if navigation.rejection:
+            return self._refuse(goal_handle, navigation.rejection)
+        walk = self._walk = _Walk(navigation, goal_handle)
+        result = await walk.ended
+        if result.outcome is Outcome.REACHED:
+            goal_handle.succeed()
+        elif result.outcome is Outcome.CANCELED:
             goal_handle.canceled()
         else:
-            goal_handle.succeed()
-        return WalkTo.Result()
+            goal_handle.abort()
+        return self._result(result)
 
     async def on_feedback_timer(self) -> None:
-        """Called every 0.2 s."""
-        self.get_logger().debug("timer feedback")
+        """Send feedback to the client, and tell the gait planner that the plan is still valid."""
+        if self._walk is None or self._tick is None or self._gait is None:
+            return
+        silent = int(self.get_clock().now().nanoseconds) - self._gait.stamp
+        if silent > _SILENCE:
+            text = f"whole_body_controller has been silent for {silent / data.SECOND:.2f} s"
+            self.get_logger().warning(f"goal given up: {text}")
+            self._halt()
+            self._end(self._walk, self._walk.navigation.stopped(self._gait, text))
+            return
+        if self._sent.steps and not self._walk.stopping:
+            self.publish_footsteps_plan(self._sent)
+        told = self._tick.feedback
+        pose = messages.stamped(self._gait.stamp, messages.planar_pose(*told.pose))
+        self._walk.handle.publish_feedback(
+            WalkTo.Feedback(
+                pose=pose,
+                distance_left=told.distance_left,
+                replanning=told.replanning,
+                steps_taken=max(told.steps_taken, 0),
+                steps_left=told.steps_left,
+            )
+        )
+
+    async def _problem(self, goal: WalkTo.Goal) -> str:
+        """The reason why a goal cannot be accepted, or ""."""
+        if self._stop.active or (self._gait is not None and halted(self._gait)):
+            await self._news.next()
+        if self._stop.active:
+            return f"emergency stop: {self._stop.reason}"
+        if self._gait is None:
+            return "the controller has not reported yet where the feet are"
+        if problem := halted(self._gait):
+            return problem
+        if self._walk is not None and self.parameters.second_goal == "reject":
+            return _BUSY
+        if goal.target.header.frame_id not in _FRAMES:
+            return f"the goal is in '{goal.target.header.frame_id}'; I walk in odom"
+        request = PlanFootsteps.Request(
+            start=messages.stance(self._gait.stance, self._gait.stamp),
+            goal=goal.target,
+            max_step_length=goal.max_step_length,
+        )
+        try:
+            answer = await self.call_plan_footsteps(request, timeout_sec=self.parameters.service_timeout)
+        except TimeoutError as error:
+            return str(error)
+        return "" if answer.status in _PLANNED else str(answer.message)
+
+    def _send(self, plan: data.FootstepPlan) -> None:
+        assert self._gait is not None
+        self._plan = plan
+        self._sent = messages.footstep_plan(plan, self._gait.stamp)
+        self.publish_footsteps_plan(self._sent)
+
+    def _halt(self) -> None:
+        """Make the robot stop with its feet side by side."""
+        assert self._gait is not None
+        self.publish_footsteps_plan(FootstepPlan(header=messages.header(self._gait.stamp, "odom")))
+
+    def _end(self, walk: _Walk, result: WalkResult) -> None:
+        self._walk, self._sent = None, FootstepPlan()
+        walk.ended.set_result(result)
+
+    def _refuse(self, handle: ServerGoalHandle, why: str) -> WalkTo.Result:
+        """End a goal that was accepted but can no longer be reached."""
+        assert self._gait is not None
+        self.get_logger().warning(f"goal aborted: {why}")
+        handle.abort()
+        outcome = Outcome.STOPPED if halted(self._gait) or why == _BUSY else Outcome.UNREACHABLE
+        return self._result(WalkResult(outcome, why, self._gait.stance.centre, 0, 0.0))
+
+    def _result(self, result: WalkResult) -> WalkTo.Result:
+        stamp = 0 if self._gait is None else self._gait.stamp
+        return WalkTo.Result(
+            outcome=int(result.outcome),
+            message=result.message[:255],
+            pose=messages.stamped(stamp, messages.planar_pose(*result.pose)),
+            steps=max(result.steps, 0),
+            time=messages.duration_of(result.time),
+        )
+
+
+class _Walk:
+    """A goal under way."""
+
+    def __init__(self, navigation: Navigation, handle: ServerGoalHandle) -> None:
+        self.navigation = navigation
+        self.handle = handle
+        self.ended = Future()
+        self.stopping = False
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = NavigationActionServer()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"navigation_action_server: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(NavigationActionServer, args, ParametersError)
 
 
 if __name__ == "__main__":

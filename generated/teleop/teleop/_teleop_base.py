@@ -24,7 +24,6 @@ HUMANOID_CMD_VEL_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
-    deadline=Duration(nanoseconds=250_000_000),
     lifespan=Duration(nanoseconds=500_000_000),
 )
 JOY_SUBSCRIPTION_QOS = QoSProfile(
@@ -36,7 +35,7 @@ JOY_SUBSCRIPTION_QOS = QoSProfile(
 
 class TeleopBase(Node, ABC):
     """Turns the axes of a joystick into velocity commands. The dead-man button must be held. When it is
-    released, or the joystick falls silent, the command is zero.
+    released, or the joystick falls silent, the command is zero, once. Then others may steer.
     """
 
     parameters: TeleopParameters

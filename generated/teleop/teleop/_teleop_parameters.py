@@ -60,7 +60,7 @@ class ScaleParameters:
     forward: float
     """Speed at full deflection [m/s]
 
-    Must be from 0.0 to 0.3. Can be set at start only.
+    Must be from 0.0 to 0.6. Can be set at start only.
     """
     sideways: float
     """Speed at full deflection [m/s]
@@ -225,12 +225,12 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "scale.forward",
             Parameter.Type.DOUBLE,
-            0.2,
+            0.4,
             ParameterDescriptor(
                 description="Speed at full deflection [m/s]",
                 read_only=True,
-                additional_constraints="must be from 0.0 to 0.3",
-                floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.3)],
+                additional_constraints="must be from 0.0 to 0.6",
+                floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.6)],
             ),
         ),
         (
@@ -285,7 +285,7 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
         (lambda value: 0 <= value <= 31, "must be from 0 to 31"),
     ),
     "scale.forward": (
-        (lambda value: 0.0 <= value <= 0.3, "must be from 0.0 to 0.3"),
+        (lambda value: 0.0 <= value <= 0.6, "must be from 0.0 to 0.6"),
     ),
     "scale.sideways": (
         (lambda value: 0.0 <= value <= 0.1, "must be from 0.0 to 0.1"),

@@ -235,7 +235,7 @@ PUBLISHERS = [
         "/humanoid/cmd_vel",
         "geometry_msgs/msg/Twist",
         geometry_msgs.msg.Twist,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, deadline=Duration(nanoseconds=250_000_000), lifespan=Duration(nanoseconds=500_000_000)),
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, lifespan=Duration(nanoseconds=500_000_000)),
         "publish_humanoid_cmd_vel",
         "humanoid_cmd_vel_publisher",
         geometry_msgs_msg_Twist,
@@ -395,9 +395,13 @@ def test_client_without_a_service(ros: Any, case: ServiceCase) -> None:
     name = node.resolve_service_name(case.name)
     client = getattr(node, case.attribute)
     ros.peer.destroy_service(ros.servers.pop(name))
-    ros.spin_until(lambda: not client.service_is_ready(), f"end of the service {name}")
+    while client.service_is_ready():
+        # Calls of the node's own may have been under way: not every transport tells that nobody will answer.
+        with suppress(ConnectionError):
+            ros.spin_until(lambda: not client.service_is_ready(), f"end of the service {name}")
     call = getattr(node, case.method)(case.service.Request())
-    assert not ros.spins_until(call.done, timeout=0.1)
+    with suppress(ConnectionError):
+        assert not ros.spins_until(call.done, timeout=0.1)
 
 
 @dataclass(frozen=True)
@@ -469,12 +473,12 @@ PARAMETERS = [
     ParameterCase(
         "scale.forward",
         Parameter.Type.DOUBLE,
-        0.2,
-        [0.2, 0.0, 0.3, 0.15, 0.001, 0.294],
-        [-0.001, 0.306],
+        0.4,
+        [0.4, 0.0, 0.6, 0.3, 0.001, 0.588],
+        [-0.001, 0.612],
         description="Speed at full deflection [m/s]",
         read_only=True,
-        range=(0.0, 0.3),
+        range=(0.0, 0.6),
     ),
     ParameterCase(
         "scale.sideways",
@@ -606,7 +610,6 @@ TIMERS = [
         0.1,
         True,
         [
-            ("publish_humanoid_cmd_vel", geometry_msgs.msg.Twist, "/humanoid/cmd_vel", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, deadline=Duration(nanoseconds=250_000_000), lifespan=Duration(nanoseconds=500_000_000)), 0.25),
         ],
     ),
 ]

@@ -378,7 +378,7 @@ SUBSCRIPTIONS = [
         "/joint_states",
         "sensor_msgs/msg/JointState",
         sensor_msgs.msg.JointState,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE, deadline=Duration(nanoseconds=20_000_000)),
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
         "on_joint_states",
         "joint_states_subscription",
         sensor_msgs_msg_JointState,

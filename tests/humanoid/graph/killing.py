@@ -26,9 +26,11 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 PROCESSES = (
-    ("simulator",),
+    ("humanoid_simulator",),
+    ("joint_state_publisher",),
     ("imu_fusion",),
     ("whole_body_controller",),
+    ("joint_controller",),
     ("gait_planner",),
     ("footstep_generation_server",),
     ("navigation_action_server",),
@@ -71,11 +73,11 @@ class Witness(Node):
 
 
 def main(victim: str) -> None:
-    document = json.dumps({"simulator": SIMULATOR})
+    document = json.dumps({"humanoid_simulator": SIMULATOR})
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     processes = {
         names[0]: subprocess.Popen(
-            [sys.executable, "-m", "humanoid.show.crew", document, "tasks", *names],
+            [sys.executable, "-m", "humanoid.show.crew", document, "{}", "tasks", *names],
             env=environment,
             stdin=subprocess.PIPE,
         )

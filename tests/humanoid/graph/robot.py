@@ -13,7 +13,7 @@ from humanoid.ros import messages
 from humanoid.show import crew
 from humanoid.simulation.sim import Simulator
 from humanoid_interfaces.action import PerformDance, WalkTo
-from humanoid_interfaces.msg import GaitState
+from humanoid_interfaces.msg import GaitState, TaskStatus
 from rcl_interfaces.msg import Log
 from rclpy.action import ActionClient
 from rclpy.executors import SingleThreadedExecutor
@@ -21,9 +21,15 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.task import Future
-from std_msgs.msg import String
 
-MOTION = ("simulator", "imu_fusion", "whole_body_controller", "gait_planner")
+MOTION = (
+    "humanoid_simulator",
+    "joint_state_publisher",
+    "imu_fusion",
+    "whole_body_controller",
+    "joint_controller",
+    "gait_planner",
+)
 WALKING = (*MOTION, "footstep_generation_server", "navigation_action_server")
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _REAL_TIME = 90.0  # s: the limit of every wait
@@ -34,7 +40,9 @@ class Robot:
     """Nodes by the names of their modules, and a tester node that knows no more than any other user."""
 
     def __init__(self, names: Iterable[str], executor: SingleThreadedExecutor, **parameters: Any) -> None:
-        self._parameters = parameters | {"simulator": _SIMULATOR | parameters.get("simulator", {})}
+        self._parameters = parameters | {
+            "humanoid_simulator": _SIMULATOR | parameters.get("humanoid_simulator", {})
+        }
         self._executor = executor
         self.nodes: dict[str, Node] = {}
         self.tester = Node("tester", parameter_overrides=[Parameter("use_sim_time", value=True)])
@@ -51,7 +59,7 @@ class Robot:
     @property
     def physics(self) -> Simulator:
         """The true state, which no node may see."""
-        physics: Simulator = self.nodes["simulator"].simulator  # type: ignore[attr-defined]
+        physics: Simulator = self.nodes["humanoid_simulator"].simulator  # type: ignore[attr-defined]
         return physics
 
     @property
@@ -72,14 +80,14 @@ class Robot:
     @property
     def standby(self) -> str:
         """The reason why the servos hold the robot on their own, or ""."""
-        reason: str = self.nodes["simulator"]._standby.reason  # type: ignore[attr-defined]
+        reason: str = self.nodes["joint_controller"]._standby.reason  # type: ignore[attr-defined]
         return reason
 
     def start(self, name: str) -> Node:
         """Start a node, for the first time or again."""
         (node,) = crew.make([name], self._parameters)
         self.nodes[name] = node
-        if name == "simulator":
+        if name == "humanoid_simulator":
             self._watch_servos()
         self._executor.add_node(node)
         return node
@@ -148,14 +156,12 @@ class Robot:
         answer = self.get(handle.get_result_async())
         return answer.status, answer.result
 
-    def task_words(self) -> str:
-        """The present task according to the task manager."""
-        words: list[str] = []
-        self.listen(
-            String, "/high_level_task_manager/state", lambda message: words.append(message.data), LATCHED
-        )
-        self.until(lambda: bool(words))
-        return words[-1]
+    def task(self) -> TaskStatus:
+        """What the task manager does."""
+        told: list[TaskStatus] = []
+        self.listen(TaskStatus, "/high_level_task_manager/task", told.append, LATCHED)
+        self.until(lambda: bool(told))
+        return told[-1]
 
     def said(self, node: str, words: str) -> bool:
         """Whether a node has logged a line with these words in it."""

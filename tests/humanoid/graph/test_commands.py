@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -22,7 +23,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
 
-from tests.humanoid.graph.robot import MOTION, WALKING, Robot, walk
+from tests.humanoid.graph.robot import LATCHED, MOTION, WALKING, Robot, walk
 
 MakeRobot = Callable[..., Robot]
 NAN, INFINITE = math.nan, math.inf
@@ -82,18 +83,18 @@ def test_no_bad_set_point_reaches_a_joint(make_robot: MakeRobot) -> None:
     assert (np.abs(followed).max(axis=1) > 0.05).all()  # never the zeros of another publisher
     assert np.abs(np.diff(followed, axis=0)).max() < 0.5
     robot.run(1.0)
-    report = reports["humanoid_simulator: commands"]
+    report = reports["joint_controller: commands"]
     refused = counts(report)
     assert min(refused[why] for why in ("not_finite", "out_of_range", "wrong_size", "late", "second")) > 5
     assert refused["missing"] == 0
     assert report.level == DiagnosticStatus.OK  # nothing was refused lately
-    robot.expect("humanoid_simulator", "set-points refused (")
+    robot.expect("joint_controller", "set-points refused (")
 
 
 @pytest.mark.slow
 def test_no_bad_reading_plan_posture_velocity_or_push_does_harm(make_robot: MakeRobot) -> None:
     # A bad reading can displace a good one from a queue of one, and then nobody answers the tick.
-    robot = make_robot(*WALKING, simulator={"patience": 0.02})
+    robot = make_robot(*WALKING, humanoid_simulator={"patience": 0.02})
     reports = reports_of(robot)
     robot.run(1.0)
     goal = robot.send(walk(0.6))
@@ -164,14 +165,34 @@ def test_commands_that_come_late_or_not_at_all_end_in_the_servos_own_stance(make
     assert np.isfinite(robot.setpoints).all()
     assert not robot.fell
     assert robot.standby.startswith("no good command for 0.0")
-    report = reports["humanoid_simulator: commands"]
+    report = reports["joint_controller: commands"]
     assert report.level == DiagnosticStatus.ERROR
     assert report.message == robot.standby
     assert counts(report)["not_finite"] > 100
     controller.publish_whole_body_position_controller_commands = publish
     robot.run(1.5)
     assert robot.standby == ""
-    robot.expect("humanoid_simulator", "whole_body_controller controls the servos again")
+    robot.expect("joint_controller", "whole_body_controller controls the servos again")
+
+
+def test_a_node_on_the_wall_clock_is_told_what_to_do(make_robot: MakeRobot) -> None:
+    """The first mistake of everybody: the node was started without use_sim_time."""
+    robot = make_robot(*MOTION)
+    robot.until(lambda: robot.mode is Mode.STANDING)
+    words = (
+        "has the time of the wall clock, but the robot's time is simulated: start the node that sends it with"
+    )
+    wall = time.time_ns()
+    plan = Plan(7, (Footstep(0, Leg.LEFT, 0.1, 0.09, 0.0),), (0, 0, 0))
+    robot.publisher(FootstepPlan, "/footsteps/upcoming", LATCHED)(messages.footstep_plan(plan, wall))
+    robot.expect("whole_body_controller", words)
+    command = JointCommand(wall, np.zeros(len(JOINT_NAMES)))
+    send = robot.publisher(Float64MultiArray, COMMANDS)
+    for _ in range(20):  # commands of the controller take the only place in the queue
+        send(messages.command(command))
+        robot.run(0.008)
+    robot.expect("joint_controller", words)
+    assert robot.mode is Mode.STANDING
 
 
 def joints(robot: Robot, names: list[str], positions: list[float], late: int = 0) -> JointState:

@@ -72,7 +72,7 @@ def comes_back(robot: Robot, node: str) -> None:
         ),
         pytest.param(
             "whole_body_controller",
-            "humanoid_simulator",
+            "joint_controller",
             "the servos hold the robot on their own: no good command for 0.0",
             marks=pytest.mark.slow,
         ),
@@ -189,7 +189,7 @@ def test_a_node_dies_at_any_moment(make_robot: MakeRobot, node: str) -> None:
     random = np.random.default_rng(11)
     times = []
     for seed in range(8):
-        robot, _ = walking(make_robot, float(random.uniform(1.3, 7.0)), simulator={"seed": seed})
+        robot, _ = walking(make_robot, float(random.uniform(1.3, 7.0)), humanoid_simulator={"seed": seed})
         robot.kill(node)
         times.append(both_feet_down_after(robot, watched=2.5))
         robot.close()

@@ -31,7 +31,7 @@ def standing(make_robot: MakeRobot, *names: str, **parameters: Any) -> Robot:
 
 
 def test_walks_that_cannot_be_walked_are_rejected_with_the_reason(make_robot: MakeRobot) -> None:
-    robot = make_robot("navigation_action_server", "footstep_generation_server", "simulator")
+    robot = make_robot("navigation_action_server", "footstep_generation_server", "humanoid_simulator")
     assert not robot.send(walk(0.3)).accepted
     robot.expect(
         "navigation_action_server", "rejected: the controller has not reported yet where the feet are"

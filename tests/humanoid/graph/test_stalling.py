@@ -26,13 +26,18 @@ def lose(node: Any, publish: str, choose: Callable[[], bool]) -> Callable[[], No
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 1])
 def test_lost_readings_and_commands_do_no_harm(make_robot: MakeRobot, seed: int) -> None:
-    robot = make_robot(*WALKING, simulator={"patience": 0.01, "seed": seed})
+    robot = make_robot(*WALKING, humanoid_simulator={"patience": 0.01, "seed": seed})
     random = np.random.default_rng(seed)
     robot.run(1.0)
-    simulator, controller = robot.nodes["simulator"], robot.nodes["whole_body_controller"]
-    for name in ("joint_states", "imu_data", "l_foot_wrench", "r_foot_wrench"):
+    simulator, controller = robot.nodes["humanoid_simulator"], robot.nodes["whole_body_controller"]
+    for name in ("joint_encoders", "imu_data", "l_foot_wrench", "r_foot_wrench"):
         lose(simulator, f"publish_{name}", lambda: random.random() < LOST)
-    lose(robot.nodes["imu_fusion"], "publish_odom", lambda: random.random() < LOST)
+    for name, publish in (
+        ("joint_state_publisher", "publish_joint_states"),
+        ("imu_fusion", "publish_odom"),
+        ("joint_controller", "publish_joint_commands"),
+    ):
+        lose(robot.nodes[name], publish, lambda: random.random() < LOST)
     lose(controller, "publish_whole_body_position_controller_commands", lambda: random.random() < LOST)
     goal = robot.send(walk(0.5, 0.2, 0.6))
     status, result = robot.result(goal)
@@ -63,15 +68,17 @@ def test_after_a_stall_of_commands_everybody_knows_and_the_robot_walks_again(mak
 @pytest.mark.parametrize(
     ("node", "publish"),
     [
+        ("joint_state_publisher", "publish_joint_states"),
         ("imu_fusion", "publish_odom"),
         ("whole_body_controller", "publish_whole_body_position_controller_commands"),
+        ("joint_controller", "publish_joint_commands"),
     ],
 )
 def test_time_begins_though_the_first_answers_get_lost(
     make_robot: MakeRobot, node: str, publish: str
 ) -> None:
     """As on real rclpy while nodes are still discovering each other."""
-    robot = make_robot("simulator", simulator={"patience": 0.05})
+    robot = make_robot("humanoid_simulator", humanoid_simulator={"patience": 0.05})
     for name in WALKING[1:]:
         robot.start(name)
     answers = iter(range(5))

@@ -14,7 +14,7 @@ from humanoid.data import FootstepPlan as Plan
 from humanoid.planning.choreography import standing_posture
 from humanoid.ros import messages
 from humanoid_interfaces.action import PerformDance, WalkTo
-from humanoid_interfaces.msg import BatteryStatus, EmergencyStop, FootstepPlan
+from humanoid_interfaces.msg import BatteryStatus, EmergencyStop, FootstepPlan, TaskStatus
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
@@ -123,10 +123,10 @@ def test_who_starts_after_it_was_pressed_obeys(make_robot: MakeRobot, late: str)
     assert not robot.send(PerformDance.Goal(dance="wave")).accepted
     robot.expect("navigation_action_server", "goal rejected: emergency stop: ")
     robot.expect("dance_action_server", "goal rejected: emergency stop: ")
-    robot.run(1.5)  # the task manager looks for tasks once a second
+    robot.run(1.5)  # the task manager looks for tasks ten times a second
     assert robot.mode is Mode.EMERGENCY_STOP
     assert "the button was pressed" in robot.gait.reason
-    assert robot.task_words() == "waiting"
+    assert robot.task().state == TaskStatus.STATE_IDLE
     assert press(robot, down=False).success
     robot.until(lambda: robot.mode is Mode.STANDING)
 

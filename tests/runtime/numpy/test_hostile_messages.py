@@ -60,7 +60,7 @@ def limited(call: Any, *arguments: Any) -> None:
         tracemalloc.stop()
 
 
-@settings(max_examples=600)
+@settings(max_examples=250)
 @given(
     values=st.fixed_dictionaries(dict.fromkeys(("height", "width", "is_bigendian", "step"), VALUES)),
     encoding=st.sampled_from(ENCODINGS) | st.text(max_size=30),
@@ -88,7 +88,7 @@ def layouts(draw: Any) -> list[dict[str, Any]]:
     return draw(st.lists(rows, max_size=5) | st.sampled_from([xyz, xyz[::-1], stacked]))
 
 
-@settings(max_examples=800)
+@settings(max_examples=300)
 @given(
     values=st.fixed_dictionaries(dict.fromkeys(("height", "width", "point_step", "row_step"), VALUES)),
     layout=layouts(),

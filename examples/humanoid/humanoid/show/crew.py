@@ -1,0 +1,128 @@
+"""The nodes of the demo, and how they share processes.
+
+On the local transport everything runs in one process and one executor. Real rclpy is far slower, so there
+each group has a process; `python -m humanoid.show.crew '{}' '{}' motion` runs one of them. Its executor
+checks all entities of its nodes whenever a message arrives. Nodes that receive the sensors 250 times a second
+therefore share no process with nodes that do not.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import json
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterable, Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.lifecycle import LifecycleNode
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from ..ros import quick_executor
+from ..ros.running import until_shutdown
+from . import replacing
+from .scenarios import Parameters
+
+SIMULATOR = "humanoid_simulator"
+
+EXTRA = ("face_detection",)
+"""Nodes that run only on demand."""
+
+GROUPS: dict[str, tuple[str, ...]] = {
+    "physics": (SIMULATOR,),
+    "motion": (
+        "joint_state_publisher",
+        "imu_fusion",
+        "whole_body_controller",
+        "joint_controller",
+        "gait_planner",
+    ),
+    "limbs": ("inverse_kinematics_server", "dance_action_server"),
+    "tasks": (
+        "emergency_stop",
+        "battery_monitor",
+        "footstep_generation_server",
+        "navigation_action_server",
+        "high_level_task_manager",
+        "teleop",
+        "face_detection",
+    ),
+}
+"""Nodes by process; each is in the package of its name."""
+
+_PACED = "physics"  # the group that a timer paces, to the millisecond
+
+
+def make(
+    names: Iterable[str], parameters: Parameters, replaced: Mapping[str, str] = MappingProxyType({})
+) -> list[Node]:
+    """Make these nodes. All but the simulator, which produces it, use simulated time.
+
+    `replaced` has files or modules with somebody's own node instead. Raises ReplacementError.
+    """
+    return [_make(name, dict(parameters.get(name, {})), replaced.get(name)) for name in names]
+
+
+def _make(name: str, values: dict[str, Any], replacement: str | None) -> Node:
+    if name != SIMULATOR:
+        values["use_sim_time"] = True
+    make_node: Callable[..., Node] = (
+        getattr(import_module(f"{name}.{name}"), name.title().replace("_", ""))
+        if replacement is None
+        else replacing.node_class(replacement)
+    )
+    overrides = [Parameter(key, value=value) for key, value in values.items()]
+    node = make_node(parameter_overrides=overrides)
+    if isinstance(node, LifecycleNode):
+        node.trigger_configure()
+        node.trigger_activate()
+    return node
+
+
+def all_nodes() -> list[str]:
+    """The names of all nodes of the robot."""
+    return [name for names in GROUPS.values() for name in names]
+
+
+def members(group: str, *, with_extra: bool) -> tuple[str, ...]:
+    """The nodes of a group."""
+    return tuple(name for name in GROUPS[group] if with_extra or name not in EXTRA)
+
+
+def main() -> None:
+    """Run nodes of a group until Ctrl-C; the arguments are parameters and replaced ones, group and nodes."""
+    parameters, replaced, group, *names = sys.argv[1:]
+    nodes: list[Node] = []
+    with contextlib.suppress(KeyboardInterrupt):  # whenever it comes
+        threading.Thread(target=_end_with_parent, daemon=True).start()
+        rclpy.init(args=[])
+        with until_shutdown():
+            executor = SingleThreadedExecutor() if group == _PACED else quick_executor.make()
+            nodes += make(names or GROUPS[group], json.loads(parameters), json.loads(replaced))
+            for node in nodes:
+                executor.add_node(node)
+            # The present objects stay alive: the collector need not examine them again, which takes 20 ms.
+            gc.freeze()
+            executor.spin()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # terminal, parent and stdin may each send it
+    for node in nodes:
+        node.destroy_node()
+    rclpy.try_shutdown()
+
+
+def _end_with_parent() -> None:
+    """Interrupt this process when the process at the other end of stdin is gone."""
+    if not sys.stdin.isatty():
+        sys.stdin.read()
+        signal.raise_signal(signal.SIGINT)
+
+
+if __name__ == "__main__":
+    main()

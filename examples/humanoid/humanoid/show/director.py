@@ -1,0 +1,216 @@
+"""A node that watches a scenario and keeps score. It asks nothing of the robot."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from geometry_msgs.msg import WrenchStamped
+from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState, Stance, TaskStatus
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
+
+from ..data import SECOND, Footstep, Mode
+from ..planning.tasks import task_of
+from ..ros import messages
+from ..spatial import Array
+from .audience import PUSH_TIME
+
+_LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+_LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_TASKS = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_LYING = 0.45  # m of base_link above the floor
+_LOOK = 0.1  # s of simulated time between checks that everything is over
+_LAST = 1.0  # s of simulated time from then until the end
+
+Say = Callable[[str], None]
+
+
+@dataclass(slots=True)
+class Score:
+    """The results as messages report them; lengths in metres, times in simulated seconds."""
+
+    steps: int = 0
+    distance: float = 0.0  # of the middle between the soles, from step to step
+    falls: int = 0
+    foot_errors: list[float] = field(default_factory=list)
+    goal_errors: list[float] = field(default_factory=list)
+    dances: int = 0
+    pushes: int = 0
+    stop_times: list[float] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)  # tasks that failed though nobody stopped the robot
+
+    @property
+    def foot_error(self) -> float:
+        """Root mean square of the distances between the feet's landings and their planned places."""
+        errors = self.foot_errors
+        return math.sqrt(sum(e * e for e in errors) / len(errors)) if errors else 0.0
+
+
+class Director(Node):
+    """Keeps score; `say` is called with what happens, `is_quiet` tells whether nobody else has plans."""
+
+    def __init__(self, say: Say, is_quiet: Callable[[], bool] = lambda: True) -> None:
+        super().__init__("director", parameter_overrides=[Parameter("use_sim_time", value=True)])
+        self.score = Score()
+        self.mode = Mode.UNKNOWN
+        self.fallen = False  # according to the controller, or to where it really is
+        self.begun: float | None = None  # when the first task began, simulated seconds
+        self.is_over = False
+        self._say = say
+        self._is_quiet = is_quiet
+        self._task = TaskStatus()
+        self._task_begun = 0.0
+        self._is_stopped = False
+        self._planned: dict[int, Footstep] = {}
+        self._truth: tuple[Array, Array] | None = None
+        self._middle: Array | None = None  # between the soles, at the last landing
+        self._base: Array | None = None
+        self._index: int | None = None
+        self._end = math.inf
+        self._digest = hashlib.sha256()
+        topics: tuple[tuple[type[Any], str, QoSProfile | int, Callable[[Any], None]], ...] = (
+            (TaskStatus, "/high_level_task_manager/task", _TASKS, self._on_task),
+            (GaitState, "/gait_state", _LATCHED, self._on_gait),
+            (FootstepPlan, "/footsteps/upcoming", _LATCHED, self._on_plan),
+            (EmergencyStop, "/emergency_stop", _LATCHED, self._on_stop),
+            (WrenchStamped, "/humanoid_simulator/push", 10, self._on_push),
+            (Stance, "/humanoid_simulator/ground_truth/stance", _LATEST, self._on_truth),
+            (Odometry, "/humanoid_simulator/ground_truth/odom", _LATEST, self._on_odometry),
+        )
+        for kind, topic, qos, heard in topics:
+            self.create_subscription(kind, topic, heard, qos)
+        self.create_timer(_LOOK, self._look)
+
+    @property
+    def state_hash(self) -> str:
+        """SHA-256 over the true poses of the robot at every moment: equal runs have equal hashes."""
+        return self._digest.hexdigest()
+
+    @property
+    def now(self) -> float:
+        """Simulated seconds."""
+        return float(self.get_clock().now().nanoseconds) / SECOND
+
+    @property
+    def base(self) -> Array | None:
+        """The true position (3,) of base_link [m], if the simulator publishes it."""
+        return self._base
+
+    def distance_to(self, x: float, y: float) -> float:
+        """True distance of the middle between the soles from a point [m]; infinite if not published."""
+        middle = self._middle_now()
+        return math.inf if middle is None else math.hypot(middle[0] - x, middle[1] - y)
+
+    def _look(self) -> None:
+        """Note the end: the last task is done, and nobody has plans. A robot that lies has no future."""
+        is_idle = self._task.state == TaskStatus.STATE_IDLE and self._task.number > 0
+        if not (self.fallen or (is_idle and self._is_quiet())):
+            self._end = math.inf
+        elif self._end == math.inf:
+            self._end = self.now + _LAST
+        self.is_over = self.now >= self._end
+
+    def _on_task(self, message: TaskStatus) -> None:
+        self._task = message
+        match message.state:
+            case TaskStatus.STATE_RUNNING:
+                self._begin(message)
+            case TaskStatus.STATE_SUCCEEDED:
+                self._succeed(message)
+            case TaskStatus.STATE_CANCELED:
+                self._cancelled(message)
+            case TaskStatus.STATE_FAILED:
+                self._say(f"not done: {message.message}")
+                if not self._is_stopped:
+                    self.score.failures.append(f"{message.words}: {message.message}")
+
+    def _begin(self, message: TaskStatus) -> None:
+        self._task_begun = self.now
+        if self.begun is None:
+            self.begun = self.now
+        kind = message.words.partition(" ")[0]
+        if kind == "walk":
+            x, y, yaw = messages.planar(message.goal)
+            self._say(f"walk to ({x:g} m, {y:g} m, {math.degrees(yaw):.0f} deg)")
+        elif kind != "wait":
+            self._say(message.words)
+
+    def _succeed(self, message: TaskStatus) -> None:
+        kind = message.words.partition(" ")[0]
+        if kind == "walk":
+            x, y, _ = messages.planar(message.goal)
+            error = self.distance_to(float(x), float(y))
+            if math.isfinite(error):
+                self.score.goal_errors.append(error)
+            self._say(f"arrived with {message.message}, {error * 1e3:.0f} mm off")
+        elif kind == "dance":
+            self.score.dances += 1
+            self._say(f"danced {message.message}")
+
+    def _cancelled(self, message: TaskStatus) -> None:
+        asked = task_of(message.words).seconds
+        if message.words.startswith("walk") and asked:
+            self.score.stop_times.append(self.now - self._task_begun - asked)
+            self._say(f"cancelled: stands after {self.score.stop_times[-1]:.2f} s")
+        else:
+            self._say(f"cancelled: {message.words}")
+
+    def _on_push(self, message: WrenchStamped) -> None:
+        x, y, _ = messages.numbers(message.wrench.force) * PUSH_TIME
+        self.score.pushes += 1
+        degrees = math.degrees(math.atan2(y, x)) % 360
+        self._say(f"pushed with {math.hypot(x, y):g} N s towards {degrees:.0f} deg")
+
+    def _on_stop(self, message: EmergencyStop) -> None:
+        if message.active != self._is_stopped:
+            self._say("emergency stop" if message.active else "released: the robot accepts goals again")
+        self._is_stopped = message.active
+
+    def _on_gait(self, message: GaitState) -> None:
+        self.mode = Mode(message.mode)
+        fallen = self.mode is Mode.FALLEN or self._lies()
+        if fallen and not self.fallen:
+            self.score.falls += 1
+            self._say("fallen")
+        before, self._index = self._index, int(message.footstep_index)
+        self.fallen = fallen
+        if before is not None and self._index == before + 1:
+            self._landed(before)
+
+    def _landed(self, index: int) -> None:
+        self.score.steps += 1
+        middle = self._middle_now()
+        if middle is None or self._truth is None:
+            return
+        if self._middle is not None:
+            self.score.distance += math.dist(middle, self._middle)
+        self._middle = middle
+        step = self._planned.get(index)
+        if step is not None:
+            self.score.foot_errors.append(math.dist(step.pose[:2], self._truth[step.leg.side][:2]))
+
+    def _middle_now(self) -> Array | None:
+        return None if self._truth is None else (self._truth[0][:2] + self._truth[1][:2]) / 2
+
+    def _lies(self) -> bool:
+        return self._base is not None and bool(self._base[2] < _LYING)
+
+    def _on_plan(self, message: FootstepPlan) -> None:
+        self._planned.update((step.index, step) for step in messages.read_footstep_plan(message).steps)
+
+    def _on_truth(self, message: Stance) -> None:
+        self._truth = messages.read_stance(message).feet
+        if self._middle is None:
+            self._middle = self._middle_now()
+
+    def _on_odometry(self, message: Odometry) -> None:
+        if messages.nanoseconds(message.header.stamp) / SECOND <= self._end:
+            self._digest.update(serialize_message(message))
+        self._base = messages.numbers(message.pose.pose.position)

@@ -1,0 +1,138 @@
+"""The guards between a command and a joint: a gate that refuses bad commands, and the emergency stop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..data import SECOND, Cause, EmergencyStop, JointCommand
+from ..spatial import Array
+
+LATEST = 50_000_000  # ns: an older command answers a state that is long past
+MISSING_AFTER = 100_000_000  # ns without a good command until commands count as missing
+_WALL_CLOCK = 10**9 * SECOND  # ns: no simulation runs for 30 years
+_SLACK = 1.5  # rad that a set-point may lie beyond a joint's range: it also contains torque feed-forward
+
+
+@dataclass(slots=True)
+class Refusals:
+    """The number of refused commands, by reason; `missing` counts ticks without a good command."""
+
+    late: int = 0
+    second: int = 0  # for a tick that already had one, or without a tick while others name theirs
+    not_finite: int = 0
+    wrong_size: int = 0
+    out_of_range: int = 0
+    missing: int = 0
+
+    @property
+    def total(self) -> int:
+        """All refused commands; ticks without a command are not counted."""
+        return self.late + self.second + self.not_finite + self.wrong_size + self.out_of_range
+
+
+def clock_problem(stamp: int, now: int, what: str) -> str:
+    """Words for a stamp [ns] of the wall clock, where the time now is simulated; "" if it is none."""
+    if stamp - now < _WALL_CLOCK:
+        return ""
+    return (
+        f"{what} has the time of the wall clock, but the robot's time is simulated: start the node that "
+        "sends it with `--ros-args -p use_sim_time:=true`"
+    )
+
+
+class CommandGate:
+    """Passes good commands on to the servos, and keeps the last good one if none arrives."""
+
+    def __init__(self, lower: Array, upper: Array) -> None:
+        self._lower, self._upper = lower - _SLACK, upper + _SLACK
+        self.refusals = Refusals()
+        self.reason = ""  # why the last command was refused
+        self.reset(np.zeros_like(lower))
+
+    def reset(self, setpoints: Array) -> None:
+        """Hold these positions (29,) until the first command arrives; there is no limit to that wait."""
+        self._setpoints = setpoints.copy()
+        self._accepted: int | None = None
+        self._answered: int | None = None  # the last tick that a command was for
+
+    def accept(self, command: JointCommand, now: int) -> bool:
+        """Whether the command is good; if so, it becomes the servos' set-points."""
+        position = np.asarray(command.position, dtype=float)
+        if position.shape != self._lower.shape:
+            self.refusals.wrong_size += 1
+            self.reason = f"a command needs {self._lower.size} positions, this one has {position.size}"
+        elif not np.isfinite(position).all():
+            self.refusals.not_finite += 1
+            self.reason = (
+                f"position {int(np.argmin(np.isfinite(position)))} of the command is not a finite number"
+            )
+        elif now - command.stamp > LATEST:
+            self.refusals.late += 1
+            self.reason = f"the command is {(now - command.stamp) / SECOND:.3f} s late"
+        elif command.stamp > now:
+            self.refusals.late += 1
+            self.reason = clock_problem(command.stamp, now, "the command") or (
+                f"the command is for a tick that is {(command.stamp - now) / SECOND:.3f} s ahead"
+            )
+        elif ((position < self._lower) | (position > self._upper)).any():
+            self.refusals.out_of_range += 1
+            self.reason = "a position of the command is far outside the joint's range"
+        elif self._has_one(command, now):
+            self.refusals.second += 1
+            self.reason = "another publisher has already commanded this tick"
+        else:
+            self._setpoints = position.copy()
+            self._accepted = now
+            self._answered = command.stamp if command.answers else self._answered
+            return True
+        return False
+
+    def protect(self, setpoints: Array) -> None:
+        """Follow these positions (29,) instead of any command."""
+        self._setpoints = setpoints.copy()
+
+    def _has_one(self, command: JointCommand, now: int) -> bool:
+        if self._answered is None:
+            return False
+        return command.stamp <= self._answered if command.answers else now - self._answered <= MISSING_AFTER
+
+    def setpoints(self, now: int) -> Array:
+        """The set-points (29,) for the servos in the next tick."""
+        if self._accepted is not None and now - self._accepted > MISSING_AFTER:
+            self.refusals.missing += 1
+        return self._setpoints
+
+    def missing(self, now: int) -> bool:
+        """Whether good commands have stopped coming."""
+        return self._accepted is not None and now - self._accepted > MISSING_AFTER
+
+
+class EmergencyStopLatch:
+    """Collects requests to stop; a reset lifts the stop only when no request is left."""
+
+    def __init__(self) -> None:
+        self.status = EmergencyStop(active=False)
+        self._asking: dict[str, tuple[Cause, str]] = {}
+
+    def request(self, source: str, cause: Cause, reason: str, stamp: int) -> EmergencyStop | None:
+        """Add a request to stop; returns the status to publish if it is new."""
+        self._asking[source] = (cause, reason)
+        if self.status.active:
+            return None
+        self.status = EmergencyStop(True, cause, source, reason, stamp)
+        return self.status
+
+    def withdraw(self, source: str) -> None:
+        """Withdraw a request; the stop remains until it is reset."""
+        self._asking.pop(source, None)
+
+    def reset(self, stamp: int) -> tuple[bool, str]:
+        """Lift the stop; returns (False, why) while a request remains."""
+        if self._asking:
+            source, (_, reason) = next(iter(self._asking.items()))
+            return False, f"{source} still requests the stop: {reason}"
+        was = self.status
+        self.status = EmergencyStop(False, was.cause, was.source, was.reason, stamp)
+        return True, ""

@@ -1,0 +1,69 @@
+"""How tools end."""
+
+from __future__ import annotations
+
+import signal
+
+import click
+import pytest
+from ifgen.cli import further
+from ifgen.writing.interruption import Terminated
+from ifgen_tools.errors import ToolError
+from ifgen_tools.group import ToolGroup
+
+from tests.cli.conftest import Run
+
+
+class ExternalShutdownException(Exception):
+    """Called as rclpy's, which is the one that counts."""
+
+
+RAISED: dict[str, BaseException] = {
+    "ctrl-c": KeyboardInterrupt(),
+    "term": Terminated(),
+    "shutdown": ExternalShutdownException(),
+    "mistake": ToolError("This is wrong.", "do that"),
+}
+
+
+SIGNALS = {"SIGINT": signal.SIGINT, "SIGTERM": signal.SIGTERM}
+
+
+@click.group(cls=ToolGroup)
+def tool() -> None:
+    """A tool."""
+
+
+@tool.command()
+@click.argument("what")
+def end(what: str) -> None:
+    """End in one way or another."""
+    if what in RAISED:
+        raise RAISED[what]
+    if what in SIGNALS:
+        signal.raise_signal(SIGNALS[what])
+    elif what == "import":
+        try:
+            signal.raise_signal(signal.SIGINT)
+        except KeyboardInterrupt:
+            raise ImportError("initialization failed") from None
+
+
+@pytest.mark.parametrize(
+    ("what", "code", "said"),
+    [
+        ("well", 0, ""),
+        ("ctrl-c", 2, ""),
+        ("term", 15, ""),
+        ("shutdown", 15, ""),
+        ("SIGINT", 2, ""),
+        ("SIGTERM", 15, ""),
+        ("import", 2, ""),
+        ("mistake", 1, "error: this is wrong\n  = help: do that\n"),
+    ],
+)
+def test_ends(ifgen: Run, monkeypatch: pytest.MonkeyPatch, what: str, code: int, said: str) -> None:
+    monkeypatch.setattr(further, "names", lambda: ["tool"])
+    monkeypatch.setattr(further, "command", lambda name: tool if name == "tool" else None)
+    done = ifgen("tool", "end", what)
+    assert (done.code, done.out, done.err) == (code, "", said)
