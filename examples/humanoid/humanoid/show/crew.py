@@ -54,6 +54,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "teleop",
         "face_detection",
     ),
+    "sight": ("camera_driver",),
 }
 """Nodes by process; each is in the package of its name."""
 
