@@ -37,7 +37,6 @@ from .window import Window, WindowError, display
 
 _LIMIT = 600.0  # s of real time for a scenario
 _TURN = 0.1  # s of real time between checks of windows and processes
-_WITH_BODY = ("imu_fusion", "whole_body_controller", "joint_controller", "inverse_kinematics_server")
 _DISCOVERY = 0.7  # s that DDS has to find another robot
 _ENDING = 5.0  # s that a process has to end
 _INTERRUPTED = "interrupted"
@@ -281,7 +280,7 @@ class _Show:
         simulator["patience"] = 5.0
         model_file, joint_map = options.model_parameters
         body = {"model_file": model_file, "joint_map": joint_map}
-        parameters = {**dict.fromkeys(_WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
+        parameters = {**dict.fromkeys(crew.WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
         for node, values in self._scenario.items():
             parameters[node] = {**parameters.get(node, {}), **values}
         return parameters
