@@ -10,7 +10,7 @@ setup(
     name="humanoid",
     version="0.1.0",
     packages=find_packages(),
-    package_data={"humanoid.show.web": ["*.html", "*.js", "*.css"]},
+    package_data={"humanoid.show.web": ["*.html", "*.js", "*.css", "three/*"]},
     data_files=[
         ("share/ament_index/resource_index/packages", ["resource/humanoid"]),
         (SHARE, ["package.xml"]),

@@ -32,7 +32,6 @@ from .director import Director
 from .recorder import Recorder
 from .replacing import ReplacementError, checked, split
 from .scenarios import ScenarioFileError, read
-from .web import vendor
 from .window import Window, WindowError, display
 
 _LIMIT = 600.0  # s of real time for a scenario
@@ -85,11 +84,9 @@ def main(options: Options) -> int:
     """Play a scenario; the exit code is 0 if the robot did what it was asked to and did not fall."""
     try:
         load_model(*options.model_parameters)  # its errors should be reported before nodes start
-        if options.web is not None:
-            vendor.fetch()
         if options.record is not None:
             check()
-    except (ModelError, RenderingError, vendor.VendorError) as error:
+    except (ModelError, RenderingError) as error:
         sys.exit(f"error: {error}")
     # Ctrl-C ends the scenario; the summary is still printed.
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
