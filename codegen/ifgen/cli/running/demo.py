@@ -150,21 +150,7 @@ def _problem(context: click.Context, record: Path | None) -> str:
     # A scenario takes a minute: what cannot be written should be said before.
     if not record.parent.is_dir():
         return f"--record: there is no folder {record.parent}"
-    if not _is_writable(record):
-        return f"--record: {record} cannot be written"
     return ""
-
-
-def _is_writable(file: Path) -> bool:
-    """Whether a file can be opened for writing, which permissions alone do not tell."""
-    existed = file.exists()
-    try:
-        file.open("ab").close()
-        if not existed:
-            file.unlink()
-    except OSError:
-        return False
-    return True
 
 
 def _prepare(transport: Literal["local", "rclpy"]) -> None:

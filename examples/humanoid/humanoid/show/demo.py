@@ -29,7 +29,7 @@ from ..simulation.rendering import RenderingError, check
 from . import crew, parts, report
 from .audience import Audience, AudienceError
 from .director import Director
-from .recorder import Recorder
+from .recorder import Recorder, check_writable
 from .replacing import ReplacementError, checked, split
 from .scenarios import ScenarioFileError, read
 from .window import Window, WindowError, display
@@ -89,6 +89,7 @@ def main(options: Options) -> int:
     try:
         load_model(*options.model_parameters)  # its errors should be reported before nodes start
         if options.record is not None:
+            check_writable(options.record)
             check()
     except (ModelError, RenderingError) as error:
         sys.exit(f"error: {error}")
