@@ -132,6 +132,7 @@ def main() -> None:
     parameters, replaced, group, *names = sys.argv[1:]
     nodes: list[Node] = []
     with contextlib.suppress(KeyboardInterrupt):  # whenever it comes
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         threading.Thread(target=_end_with_parent, daemon=True).start()
         rclpy.init(args=[])
         with until_shutdown():

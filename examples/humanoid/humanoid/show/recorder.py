@@ -19,6 +19,17 @@ _SPEED = 2  # of the animation: each picture is shown for half the time that it 
 _PERIOD = FRAME_TIME * 1_000_000 * _SPEED  # ns of simulated time between pictures
 
 
+def check_writable(path: Path) -> None:
+    """Raise RenderingError if a file cannot be written, which permissions alone do not tell."""
+    existed = path.exists()
+    try:
+        path.open("ab").close()
+        if not existed:
+            path.unlink()
+    except OSError as error:
+        raise RenderingError(f"--record: {path} cannot be written: {error.strerror}") from None
+
+
 class Recorder(Follower):
     """Remembers postures and footsteps; it draws at the end, when time no longer matters."""
 
