@@ -37,7 +37,16 @@ from .window import Window, WindowError, display
 
 _LIMIT = 600.0  # s of real time for a scenario
 _TURN = 0.1  # s of real time between checks of windows and processes
-_WITH_BODY = ("imu_fusion", "whole_body_controller", "joint_controller", "inverse_kinematics_server")
+_WITH_BODY = (
+    "imu_fusion",
+    "whole_body_controller",
+    "joint_controller",
+    "inverse_kinematics_server",
+    "gait_planner",
+    "footstep_generation_server",
+    "navigation_action_server",
+    "dance_action_server",
+)
 _DISCOVERY = 0.7  # s that DDS has to find another robot
 _ENDING = 5.0  # s that a process has to end
 _INTERRUPTED = "interrupted"
