@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
 import socket
 import struct
 import threading
 from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import urljoin
 
 import pytest
 
 pytest.importorskip("mujoco")
 from humanoid.show.web import server
 
+WEB = Path(server.__file__).parent
 BIG = {"text": "x" * 2**20}
 LINGER_NOT = struct.pack("ii", 1, 0)
 
@@ -120,3 +125,27 @@ def test_who_resets_is_not_spoken_of(page: server.PageServer, capfd: pytest.Capt
             break
     wait_for_threads(before)
     assert capfd.readouterr().err == ""
+
+
+def test_three_js_is_what_its_table_says() -> None:
+    folder = WEB / "three"
+    rows = re.findall(r"^\| ([0-9a-f]{64}) \| (\S+) \|", (folder / "README.md").read_text(), re.MULTILINE)
+    found = {(hashlib.sha256(path.read_bytes()).hexdigest(), path.name) for path in folder.iterdir()}
+    assert set(rows) == {(digest, name) for digest, name in found if name != "README.md"}
+
+
+def test_the_page_needs_nothing_from_elsewhere(page: server.PageServer) -> None:
+    """Every file that the page or one of its scripts names is served by it."""
+    names = {"three": "/three/three.module.js"}  # of the page's import map
+    seen: set[str] = set()
+    waiting = {"/"}
+    while waiting:
+        path = waiting.pop()
+        seen.add(path)
+        head, _, text = answer(page, f"GET {path} HTTP/1.1\nHost: localhost\n\n").partition("\r\n\r\n")
+        assert head.startswith("HTTP/1.0 200 "), path
+        pattern = r"""(?:src|href)="([^"]+)"|^(?:import|export)? ?[^;'"/*]*\bfrom ['"]([^'"]+)['"];$"""
+        found = {one or other for one, other in re.findall(pattern, text, re.MULTILINE)}
+        wanted = {urljoin(path, names.get(name, name)) for name in found if not name.startswith("data:")}
+        waiting |= wanted - seen
+    assert seen >= {"/view.js", "/style.css", "/three/three.core.js", "/three/OrbitControls.js"}

@@ -32,21 +32,10 @@ from .director import Director
 from .recorder import Recorder
 from .replacing import ReplacementError, checked, split
 from .scenarios import ScenarioFileError, read
-from .web import vendor
 from .window import Window, WindowError, display
 
 _LIMIT = 600.0  # s of real time for a scenario
 _TURN = 0.1  # s of real time between checks of windows and processes
-_WITH_BODY = (
-    "imu_fusion",
-    "whole_body_controller",
-    "joint_controller",
-    "inverse_kinematics_server",
-    "gait_planner",
-    "footstep_generation_server",
-    "navigation_action_server",
-    "dance_action_server",
-)
 _DISCOVERY = 0.7  # s that DDS has to find another robot
 _ENDING = 5.0  # s that a process has to end
 _INTERRUPTED = "interrupted"
@@ -95,11 +84,9 @@ def main(options: Options) -> int:
     """Play a scenario; the exit code is 0 if the robot did what it was asked to and did not fall."""
     try:
         load_model(*options.model_parameters)  # its errors should be reported before nodes start
-        if options.web is not None:
-            vendor.fetch()
         if options.record is not None:
             check()
-    except (ModelError, RenderingError, vendor.VendorError) as error:
+    except (ModelError, RenderingError) as error:
         sys.exit(f"error: {error}")
     # Ctrl-C ends the scenario; the summary is still printed.
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
@@ -290,7 +277,7 @@ class _Show:
         simulator["patience"] = 5.0
         model_file, joint_map = options.model_parameters
         body = {"model_file": model_file, "joint_map": joint_map}
-        parameters = {**dict.fromkeys(_WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
+        parameters = {**dict.fromkeys(crew.WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
         for node, values in self._scenario.items():
             parameters[node] = {**parameters.get(node, {}), **values}
         return parameters

@@ -14,8 +14,6 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
 
-from . import vendor
-
 _FOLDER = Path(__file__).parent
 _TYPES = {
     ".html": "text/html; charset=utf-8",
@@ -24,11 +22,12 @@ _TYPES = {
     ".svg": "image/svg+xml",
     "": "text/plain; charset=utf-8",
 }
+_THREE = ("three/three.module.js", "three/three.core.js", "three/OrbitControls.js")
 _FILES = {
     "/": "index.html",
     **{f"/{name}": name for name in ("style.css", "view.js", "robot.js")},
+    **{f"/{name}": name for name in _THREE},
 }
-_THREE = {f"/vendor/{name}": name for name in ("three.module.js", "three.core.js", "OrbitControls.js")}
 _KEEP_ALIVE = 5.0  # s between comments on an idle stream, so that a closed page is noticed
 _PATIENCE = 10.0  # s for a client that sends nothing, or reads nothing
 _HEADERS = {
@@ -111,13 +110,6 @@ class PageServer:
             return (self._number, self._state) if self._number > seen else (seen, "")
 
 
-def _file(path: str) -> Path | None:
-    """The file at a path of the page."""
-    if path in _FILES:
-        return _FOLDER / _FILES[path]
-    return vendor.folder() / _THREE[path] if path in _THREE else None
-
-
 class _Server(ThreadingHTTPServer):
     """A server with a thread for each client; it does not report clients that disconnect early."""
 
@@ -142,11 +134,9 @@ class _Handler(BaseHTTPRequestHandler):
             return
         if self.path == "/states":
             self._stream()
-        elif (path := _file(self.path)) is not None:
-            if path.is_file():
-                self._answer(_TYPES[path.suffix], path.read_bytes())
-            else:
-                self.send_error(HTTPStatus.NOT_FOUND, "run `python -m humanoid.show.web.vendor`")
+        elif self.path in _FILES:
+            path = _FOLDER / _FILES[self.path]
+            self._answer(_TYPES[path.suffix], path.read_bytes())
         elif (made := self.page.document(self.path)) is not None:
             self._answer(_TYPES[made[0]], made[1].encode())
         else:

@@ -1,6 +1,6 @@
 // The page: draws each state that the server sends.
 import * as THREE from "three";
-import { OrbitControls } from "/vendor/OrbitControls.js";
+import { OrbitControls } from "/three/OrbitControls.js";
 import { Robot } from "/robot.js";
 
 const LEFT = 1;
