@@ -203,6 +203,7 @@ def test_a_second_robot_in_the_same_domain_is_refused() -> None:
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as first:
             assert first.stdout is not None
             try:
+                assert first.stdout.readline().startswith("waking up")
                 assert "stands, and waits" in first.stdout.readline()
                 second = subprocess.run(
                     command, capture_output=True, text=True, timeout=60, env=environment, check=False
