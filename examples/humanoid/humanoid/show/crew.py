@@ -54,10 +54,11 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "teleop",
         "face_detection",
     ),
+    "sight": ("camera_driver",),
 }
 """Nodes by process; each is in the package of its name."""
 
-MANAGED = ("joint_controller",)
+MANAGED = ("camera_driver", "joint_controller")
 """Nodes with a lifecycle: whoever starts them activates them."""
 
 WITH_BODY = (

@@ -286,6 +286,7 @@ class _Show:
         model_file, joint_map = options.model_parameters
         body = {"model_file": model_file, "joint_map": joint_map}
         parameters = {**dict.fromkeys(crew.WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
+        parameters["camera_driver"] = {"streaming": options.camera}
         for node, values in self._scenario.items():
             parameters[node] = {**parameters.get(node, {}), **values}
         return parameters

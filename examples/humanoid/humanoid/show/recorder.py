@@ -8,6 +8,7 @@ import mujoco
 
 from ..data import Footstep
 from ..robot.model import HumanoidModel
+from ..robot.obstacles import Solid
 from ..simulation.rendering import FRAME_TIME, FollowCamera, Picture, RenderingError, save_gif, save_png
 from ..simulation.sim import Simulator
 from ..spatial import Array
@@ -34,7 +35,7 @@ class Recorder(Follower):
 
     def __init__(self, model: HumanoidModel) -> None:
         super().__init__("recorder", model)
-        self._shots: list[tuple[Array, tuple[Footstep, ...]]] = []
+        self._shots: list[tuple[Array, tuple[Footstep, ...], tuple[Solid, ...]]] = []
         self._due = 0
 
     def save(self, path: Path) -> None:
@@ -60,11 +61,16 @@ class Recorder(Follower):
     def take(self, stamp: int, posture: Array, steps: tuple[Footstep, ...]) -> None:
         """Keep the posture."""
         self._due = stamp + _PERIOD
-        self._shots.append((posture, steps))
+        self._shots.append((posture, steps, self.solids))
 
+    @staticmethod
     def _draw(
-        self, camera: FollowCamera, stage: Simulator, posture: Array, steps: tuple[Footstep, ...]
+        camera: FollowCamera,
+        stage: Simulator,
+        posture: Array,
+        steps: tuple[Footstep, ...],
+        solids: tuple[Solid, ...],
     ) -> Picture:
         stage.data.qpos[:] = posture
-        mujoco.mj_forward(self._model.mj, stage.data)
-        return camera.picture(stage, steps)
+        mujoco.mj_forward(stage.model.mj, stage.data)
+        return camera.picture(stage, steps, solids)
