@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,7 @@ from ..spatial import quaternion_of, rotation_rpy
 from . import table
 from .joint_map import Frame, JointMap, ModelError, read_map
 from .model import GRAVITY, PERIOD, SOLE, HumanoidModel, Names, describe, load
+from .obstacles import Solid, add_solids
 
 _ALIGNED = 1e-3  # tolerance of the axes: metres, and sine of the angle
 _GRAVITY_OFF = 0.2  # m/s2: it varies by less than this from place to place on earth
@@ -39,19 +40,20 @@ _LINK = {frame.name: frame for frame in table.FRAMES}
 _JOINT = {link.name: link.joint.name for link in table.LINKS if link.joint is not None}
 
 
-def load_model(model_file: str = "", joint_map: str = "") -> HumanoidModel:
+def load_model(model_file: str = "", joint_map: str = "", solids: Sequence[Solid] = ()) -> HumanoidModel:
     """Load our own robot, or the one that the parameters name by file and map. Raises ModelError."""
     if not model_file:
-        return load()
-    return load_external(Path(model_file), Path(joint_map) if joint_map else None)
+        return load(solids=solids)
+    return load_external(Path(model_file), Path(joint_map) if joint_map else None, solids)
 
 
-def load_external(path: Path, joint_map: Path | None = None) -> HumanoidModel:
+def load_external(path: Path, joint_map: Path | None = None, solids: Sequence[Solid] = ()) -> HumanoidModel:
     """Compile somebody else's model. Raises ModelError, which names the element that is wrong."""
     names = read_map(joint_map) if joint_map is not None else JointMap()
     spec = _parse(path)
     try:
         _Adapter(path, spec, names).adapt()
+        add_solids(spec, solids)
         mj = spec.compile()
     except ValueError as error:
         raise ModelError(f"{path}: {_sentence(error)}") from error

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import mujoco
@@ -15,6 +15,7 @@ from . import table
 from .body import OURS, Body
 from .measuring import measure
 from .mjcf import TIMESTEP, write_mjcf
+from .obstacles import Solid, add_solids
 
 Indices = NDArray[np.intp]
 GRAVITY = 9.81
@@ -86,9 +87,11 @@ class HumanoidModel:
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 
-def load(timestep: float = TIMESTEP) -> HumanoidModel:
-    """Compile the robot of the table in its scene."""
-    mj = mujoco.MjModel.from_xml_string(write_mjcf(timestep))
+def load(timestep: float = TIMESTEP, solids: Sequence[Solid] = ()) -> HumanoidModel:
+    """Compile the robot of the table in its scene, with obstacles."""
+    spec = mujoco.MjSpec.from_string(write_mjcf(timestep))
+    add_solids(spec, solids)
+    mj = spec.compile()
     names = Names({name: name for name in table.JOINT_NAMES}, "base_link", "torso")
     return replace(describe(mj, names, SOLE), body=OURS)
 
