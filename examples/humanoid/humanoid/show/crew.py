@@ -54,10 +54,11 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "teleop",
         "face_detection",
     ),
+    "sight": ("camera_driver",),
 }
 """Nodes by process; each is in the package of its name."""
 
-MANAGED = ("joint_controller",)
+MANAGED = ("camera_driver", "joint_controller")
 """Nodes with a lifecycle: whoever starts them activates them."""
 
 WITH_BODY = (
@@ -66,6 +67,10 @@ WITH_BODY = (
     "whole_body_controller",
     "joint_controller",
     "inverse_kinematics_server",
+    "gait_planner",
+    "footstep_generation_server",
+    "navigation_action_server",
+    "dance_action_server",
 )
 """Nodes that load the robot's model: their parameters `model_file` and `joint_map` say which."""
 
@@ -131,6 +136,7 @@ def main() -> None:
     parameters, replaced, group, *names = sys.argv[1:]
     nodes: list[Node] = []
     with contextlib.suppress(KeyboardInterrupt):  # whenever it comes
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         threading.Thread(target=_end_with_parent, daemon=True).start()
         rclpy.init(args=[])
         with until_shutdown():
