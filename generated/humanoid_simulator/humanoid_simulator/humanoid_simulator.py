@@ -29,7 +29,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase
-from humanoid_simulator._humanoid_simulator_parameters import ParametersError
+from humanoid_simulator._humanoid_simulator_parameters import HumanoidSimulatorParameters, ParametersError
 
 _FEET = (np.array([0.0, table.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -table.STANCE_WIDTH / 2, 0.0]))
 _LOST = 0.1  # s that paced lockstep may lag behind the wall clock before the lost time is dropped
@@ -68,6 +68,10 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         if self._camera is not None:
             self._camera.close()
         super().destroy_node()
+
+    def on_parameters_changed(self, parameters: HumanoidSimulatorParameters) -> None:
+        """Follow the wall clock at the new speed from here on."""
+        self._restart_wall()
 
     @property
     def stamp(self) -> int:

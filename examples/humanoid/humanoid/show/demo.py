@@ -6,6 +6,7 @@ import contextlib
 import json
 import math
 import os
+import secrets
 import signal
 import subprocess
 import sys
@@ -39,6 +40,7 @@ _TURN = 0.1  # s of real time between checks of windows and processes
 _WITH_BODY = ("imu_fusion", "whole_body_controller", "joint_controller", "inverse_kinematics_server")
 _DISCOVERY = 0.7  # s that DDS has to find another robot
 _ENDING = 5.0  # s that a process has to end
+_TOKEN = 18  # bytes of the page's token
 _INTERRUPTED = "interrupted"
 _CODE_INTERRUPTED = 130  # as for all commands of ifgen
 
@@ -66,6 +68,7 @@ class Options:
     transport: str = "local"
     record: Path | None = None
     web: int | None = None  # the port; 0: any free one
+    host: str = ""  # another address than this machine's own; who has the page's token may come
     window: bool = False  # if there is a display
     realtime: bool = False
     seed: int = 0
@@ -137,7 +140,7 @@ class _Show:
             self._refuse_company(0)
             self._processes = [self._start(group, names) for group, names in groups.items()]
         if options.web is not None:
-            self._nodes.append(_serve(options.web))
+            self._nodes.append(_serve(options, audience))
         for node in self._nodes:
             self._executor.add_node(node)
 
@@ -292,12 +295,15 @@ class _Show:
         return subprocess.Popen(command, env=environment, stdin=subprocess.PIPE)
 
 
-def _serve(port: int) -> Node:
+def _serve(options: Options, audience: Audience) -> Node:
+    from .web.server import LOOPBACK
     from .web.view_node import WebView  # its libraries take time to import
 
+    host, port = options.host or LOOPBACK, options.web or 0
+    token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port)
+        view = WebView(port, host, token, audience)
     except OSError as error:
-        sys.exit(f"error: 127.0.0.1:{port}: {error.strerror}; choose another port with --port, or 0 for any")
+        sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)
     return view
