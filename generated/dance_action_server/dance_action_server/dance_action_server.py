@@ -7,6 +7,7 @@ from typing import Any
 from humanoid import data
 from humanoid.planning.dance import Dance, DanceFeedback, problem
 from humanoid.planning.navigation import halted
+from humanoid.robot.body import load_body
 from humanoid.ros import messages
 from humanoid.ros.news import News
 from humanoid.ros.running import run
@@ -29,6 +30,7 @@ class DanceActionServer(DanceActionServerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
+        self._body = load_body(self.parameters.model_file, self.parameters.joint_map)
         self._joints: data.JointStates | None = None
         self._gait: data.GaitState | None = None
         self._news = News(self)  # gait states
@@ -87,7 +89,7 @@ class DanceActionServer(DanceActionServerBase):
             goal_handle.abort()
             return PerformDance.Result(message=halt[:255])
         tempo = goal.tempo or self.parameters.tempo
-        dance = Dance(goal.dance, tempo, goal.beats, self._gait.stamp)
+        dance = Dance(goal.dance, tempo, goal.beats, self._gait.stamp, self._body)
         performance = self._performance = _Performance(dance, goal_handle)
         result = await performance.ended
         if result.completed:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from importlib import import_module
 from importlib.util import find_spec
@@ -19,6 +18,7 @@ from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.running.activation import ActivationError, put_on_path
 
 _PICTURES = (".gif", ".png")
+_GREATEST = 2**63 - 1  # integer of a parameter
 
 
 def _complete(context: click.Context, parameter: click.Parameter, start: str) -> list[str]:
@@ -78,7 +78,11 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
 )
 @click.option("--camera", is_flag=True, help="Let the robot also look for faces, which takes time.")
 @click.option(
-    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the sensors' noise."
+    "--seed",
+    type=click.IntRange(0, _GREATEST),
+    default=0,
+    show_default=True,
+    help="Seed of the sensors' noise.",
 )
 @click.option("--model", metavar="FILE", type=EXISTING_FILE, help="Your own humanoid, as MJCF.")
 @click.option(
@@ -110,6 +114,9 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     if problem := _problem(context, record):
         raise click.UsageError(problem, context)
     _prepare(transport)
+    # MuJoCo and the nodes take a second or two to import: nobody should wonder meanwhile.
+    click.echo(f"waking up the humanoid: {'idle' if idle else f'scenario {scenario}'}, seed {seed}")
+    sys.stdout.flush()
     # Found by name: the toolkit does not depend on its examples.
     humanoid = import_module("humanoid.show.demo")
     options = humanoid.Options(
@@ -150,8 +157,6 @@ def _problem(context: click.Context, record: Path | None) -> str:
     # A scenario takes a minute: what cannot be written should be said before.
     if not record.parent.is_dir():
         return f"--record: there is no folder {record.parent}"
-    if not os.access(record if record.exists() else record.parent, os.W_OK):
-        return f"--record: {record} cannot be written"
     return ""
 
 
