@@ -250,7 +250,7 @@ class Commands:
     def _say(self, words: str) -> None:
         self._speech.publish(String(data=words))
 
-    def _send(self, client: ActionClient[Any, Any, Any], goal: Any, done: str, answer: Answer) -> None:
+    def _send(self, client: ActionClient, goal: Any, done: str, answer: Answer) -> None:
         """Send a goal, and answer when its server has accepted it."""
 
         def end(future: Any) -> None:

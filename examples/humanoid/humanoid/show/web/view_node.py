@@ -177,10 +177,10 @@ class WebView(Node):
         if real > 0 and simulated >= 0:
             self.page.show("factor", round(simulated / real, 2))
         graph = of_running(self)
-        types = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
+        kinds = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
         rates = [
-            [name, types[name], round(self._heard[name].count() / simulated, 1) if simulated > 0 else 0.0]
-            for name in sorted(types)
+            [name, kinds[name], round(self._heard[name].count() / simulated, 1) if simulated > 0 else 0.0]
+            for name in sorted(kinds)
             if name in self._heard
         ]
         self.page.show("topics", rates)
