@@ -124,6 +124,7 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
         (["--record", str(tmp_path / "none" / "x.gif")], f"there is no folder {tmp_path / 'none'}"),
         (["--headless", "--web"], "--headless cannot be used with --web"),
         (["--port", "8001"], "--port needs --web"),
+        (["--host", "0.0.0.0"], "--host needs --web"),
         (["--joint-map", __file__], "--joint-map needs --model"),
         (["--idle", "--scenario", "walk"], "--idle cannot be used with --scenario"),
         (["--scenario", "polka"], "there is no scenario polka: choose one of all, dance, push, stop, walk"),
@@ -203,6 +204,7 @@ def test_a_second_robot_in_the_same_domain_is_refused() -> None:
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as first:
             assert first.stdout is not None
             try:
+                assert first.stdout.readline().startswith("waking up")
                 assert "stands, and waits" in first.stdout.readline()
                 second = subprocess.run(
                     command, capture_output=True, text=True, timeout=60, env=environment, check=False

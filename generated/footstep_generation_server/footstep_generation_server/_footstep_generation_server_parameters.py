@@ -51,6 +51,17 @@ class StepParameters:
 class FootstepGenerationServerParameters:
     """The parameters of the node footstep_generation_server."""
 
+    model_file: str
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its
+    legs allow
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     step: StepParameters
     """The parameters `step.*`."""
     stance_width: float
@@ -97,6 +108,8 @@ def read_parameters(node: Node) -> FootstepGenerationServerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return FootstepGenerationServerParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         step=StepParameters(
             length_max=values["step.length_max"],
             backward_max=values["step.backward_max"],
@@ -140,6 +153,24 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its legs allow",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
         (
             "step.length_max",
             Parameter.Type.DOUBLE,

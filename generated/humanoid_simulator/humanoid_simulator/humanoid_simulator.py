@@ -9,8 +9,7 @@ import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid import data
-from humanoid.control.posture import standing
-from humanoid.control.reference import GaitParameters
+from humanoid.control.posture import start
 from humanoid.robot import table
 from humanoid.robot.external import load_model
 from humanoid.robot.obstacles import Solid, random_solids, solids_of
@@ -31,9 +30,8 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase
-from humanoid_simulator._humanoid_simulator_parameters import ParametersError
+from humanoid_simulator._humanoid_simulator_parameters import HumanoidSimulatorParameters, ParametersError
 
-_FEET = (np.array([0.0, table.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -table.STANCE_WIDTH / 2, 0.0]))
 _LOST = 0.1  # s that paced lockstep may lag behind the wall clock before the lost time is dropped
 _MADE_UP = 10  # periods that physics may lag behind in real time
 _PUSH = 0.1  # s
@@ -74,6 +72,10 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         if self._camera is not None:
             self._camera.close()
         super().destroy_node()
+
+    def on_parameters_changed(self, parameters: HumanoidSimulatorParameters) -> None:
+        """Follow the wall clock at the new speed from here on."""
+        self._restart_wall()
 
     @property
     def stamp(self) -> int:
@@ -159,7 +161,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self._step()
 
     def _begin(self) -> None:
-        posture, base = standing(self._model, _FEET, GaitParameters())
+        posture, base = start(self._model)
         self.simulator.reset(posture, base)
         self._contacts: tuple[bool, bool] | None = None
         self._due: dict[str, int] = {}  # things that are due periodically, and when they are due next

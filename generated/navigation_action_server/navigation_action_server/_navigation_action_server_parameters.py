@@ -36,6 +36,17 @@ class ToleranceParameters:
 class NavigationActionServerParameters:
     """The parameters of the node navigation_action_server."""
 
+    model_file: str
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its
+    legs allow
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     second_goal: str
     """Whether a goal that arrives during a walk takes over (preempt) or is rejected (reject)
 
@@ -87,6 +98,8 @@ def read_parameters(node: Node) -> NavigationActionServerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return NavigationActionServerParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         second_goal=values["second_goal"],
         replan_distance=values["replan_distance"],
         tolerance=ToleranceParameters(
@@ -128,6 +141,24 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its legs allow",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
         (
             "second_goal",
             Parameter.Type.STRING,

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from humanoid import data
-from humanoid.planning.footsteps import PlanStatus, StepLimits, shorter
+from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, shorter
 from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
+from humanoid.robot.body import load_body
 from humanoid.robot.scene import GROUND
 from humanoid.ros import messages
 from humanoid.ros.news import News
@@ -32,6 +33,8 @@ class NavigationActionServer(NavigationActionServerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
+        body = load_body(self.parameters.model_file, self.parameters.joint_map)
+        self._limits = fitted(StepLimits(), body)
         self._gait: data.GaitState | None = None
         self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)
@@ -92,7 +95,7 @@ class NavigationActionServer(NavigationActionServerBase):
             (x, y, yaw),
             self._gait,
             self._plan,
-            limits=shorter(StepLimits(), goal.max_step_length),
+            limits=shorter(self._limits, goal.max_step_length),
             ground=GROUND,
             tolerance=GoalTolerance(
                 goal.position_tolerance or values.tolerance.position,

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..data import STEP_TIME, Footstep, Leg
+from ..robot.table import STANCE_WIDTH
 from ..spatial import Array, from_frame
 
 PREVIEW = 4  # steps that the reference looks ahead: later ones weigh exp(-w t) < 1e-5
@@ -22,9 +23,13 @@ PREVIEW = 4  # steps that the reference looks ahead: later ones weigh exp(-w t) 
 
 @dataclass(frozen=True, slots=True)
 class GaitParameters:
-    """Parameters of a walk. Times in seconds, lengths in metres; gains have no unit unless one is named."""
+    """Parameters of a walk. Times in seconds, lengths in metres; gains have no unit unless one is named.
+
+    Lengths are those of our robot; `fitting.fitted` makes them those of another.
+    """
 
     com_height: float = 0.70
+    stance_width: float = STANCE_WIDTH
     double_support: float = 0.20
     first_double_support: float = 1.2  # from standing
     settle: float = 0.5  # from the last step until the robot counts as standing

@@ -67,6 +67,10 @@ WITH_BODY = (
     "whole_body_controller",
     "joint_controller",
     "inverse_kinematics_server",
+    "gait_planner",
+    "footstep_generation_server",
+    "navigation_action_server",
+    "dance_action_server",
 )
 """Nodes that load the robot's model: their parameters `model_file` and `joint_map` say which."""
 
