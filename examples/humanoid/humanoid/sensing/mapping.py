@@ -7,7 +7,7 @@ to be as deep as it is wide.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -33,6 +33,7 @@ _DEPTHS = (0.2, 0.45)  # m: least and most that an obstacle is taken to be deep
 
 
 Mask = NDArray[np.bool_]
+Floats = NDArray[np.floating[Any]]
 _Cells = tuple[NDArray[np.intp], NDArray[np.intp]]
 
 
@@ -201,7 +202,7 @@ def _lower_edges(coloured: Mask) -> NDArray[np.intp]:
     return lowest
 
 
-def _on_floor(lens: Lens, viewpoint: Viewpoint, u: Array, v: Array, reach: float) -> Array:
+def _on_floor(lens: Lens, viewpoint: Viewpoint, u: Floats, v: Floats, reach: float) -> Array:
     """Where the rays through points of the image meet the floor, (n, 2), within a distance [m]."""
     rays = np.stack([(u - lens.x) / lens.focal, (v - lens.y) / lens.focal, np.ones_like(u)], axis=1)
     rays = rays @ viewpoint.rotation.T
