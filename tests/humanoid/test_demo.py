@@ -120,7 +120,7 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
     broken.write_text(write_mjcf().replace("l_knee", "l_kneee"))
     for words, expected in (
         (["--model", str(broken)], "no joint 'l_knee'"),
-        (["--record", "x.mp4"], "ends in .gif or .png"),
+        (["--record", "x.avi"], "ends in .gif, .mp4 or .png"),
         (["--record", str(tmp_path / "none" / "x.gif")], f"there is no folder {tmp_path / 'none'}"),
         (["--headless", "--web"], "--headless cannot be used with --web"),
         (["--port", "8001"], "--port needs --web"),

@@ -17,7 +17,7 @@ from ifgen.config import installing
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.running.activation import ActivationError, put_on_path
 
-_PICTURES = (".gif", ".png")
+_PICTURES = (".gif", ".mp4", ".png")
 _GREATEST = 2**63 - 1  # integer of a parameter
 
 
@@ -56,7 +56,7 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
 )
 @click.option("--headless", is_flag=True, help="No window and no page, and as fast as possible.")
 @click.option(
-    "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif) or a picture (.png)."
+    "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif, .mp4) or a picture (.png)."
 )
 @click.option("--web", is_flag=True, help="Serve a page on 127.0.0.1 instead of a window, until Ctrl-C.")
 @click.option(
@@ -146,7 +146,7 @@ def _problem(context: click.Context, record: Path | None) -> str:
     if record is None:
         return ""
     if record.suffix.lower() not in _PICTURES:
-        return "--record needs a file that ends in .gif or .png"
+        return "--record needs a file that ends in .gif, .mp4 or .png"
     # A scenario takes a minute: what cannot be written should be said before.
     if not record.parent.is_dir():
         return f"--record: there is no folder {record.parent}"
