@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import math
+import secrets
 import signal
 import subprocess
 import sys
@@ -38,6 +39,7 @@ from .window import Window, WindowError, display
 _LIMIT = 600.0  # s of real time for a scenario
 _TURN = 0.1  # s of real time between checks of windows and processes
 _DISCOVERY = 0.7  # s that DDS has to find another robot
+_TOKEN = 18  # bytes of the page's token
 _INTERRUPTED = "interrupted"
 _CODE_INTERRUPTED = 130  # as for all commands of ifgen
 _CODE_TERMINATED = 143
@@ -70,6 +72,7 @@ class Options:
     transport: str = "local"
     record: Path | None = None
     web: int | None = None  # the port; 0: any free one
+    host: str = ""  # another address than this machine's own; who has the page's token may come
     window: bool = False  # if there is a display
     realtime: bool = False
     seed: int = 0
@@ -152,7 +155,7 @@ class _Show:
             started = (parts.start([*documents, group, *names]) for group, names in groups.items())
             self._processes = list(started)
         if options.web is not None:
-            self._nodes.append(_serve(options.web))
+            self._nodes.append(_serve(options, audience))
         for node in self._nodes:
             self._executor.add_node(node)
 
@@ -297,12 +300,16 @@ class _Show:
         return parameters
 
 
-def _serve(port: int) -> Node:
-    from .web.view_node import WebView  # its libraries take time to import
+def _serve(options: Options, audience: Audience) -> Node:
+    # Their libraries take time to import.
+    from .web.server import LOOPBACK
+    from .web.view_node import WebView
 
+    host, port = options.host or LOOPBACK, options.web or 0
+    token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port)
+        view = WebView(port, host, token, audience)
     except OSError as error:
-        sys.exit(f"error: 127.0.0.1:{port}: {error.strerror}; choose another port with --port, or 0 for any")
+        sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)
     return view
