@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
@@ -99,6 +100,4 @@ def counted(pictures: Iterator[Picture], total: int, tell: Callable[[int, int], 
 
 
 def _part(pillow: ModuleType, name: str) -> ModuleType:
-    from importlib import import_module
-
     return import_module(f"{pillow.__package__}.{name}")
