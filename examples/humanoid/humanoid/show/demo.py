@@ -283,7 +283,7 @@ class _Show:
         if options.transport != "local":
             # On real rclpy a message costs each receiver a hundred microseconds, and every node receives the
             # clock.
-            simulator["clock_period"] = simulator["ground_truth_period"] = 0.02
+            simulator["ground_truth_period"] = 0.02
         # A machine may be busy, and processes start and are discovered one after another.
         simulator["patience"] = 5.0
         model_file, joint_map = options.model_parameters
