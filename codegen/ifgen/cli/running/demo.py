@@ -115,7 +115,8 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
         raise click.UsageError(problem, context)
     _prepare(transport)
     # MuJoCo and the nodes take a second or two to import: nobody should wonder meanwhile.
-    click.echo(f"waking up the humanoid: {'idle' if idle else f'scenario {Path(scenario).stem}'}, seed {seed}")
+    what = "idle" if idle else f"scenario {Path(scenario).stem}"
+    click.echo(f"waking up the humanoid: {what}, seed {seed}")
     sys.stdout.flush()
     # Found by name: the toolkit does not depend on its examples.
     humanoid = import_module("humanoid.show.demo")
