@@ -15,8 +15,10 @@ from pathlib import Path
 import pytest
 from humanoid.robot.mjcf import write_mjcf
 from ifgen_pytest.domains import own_domain
+from PIL import Image
 
 pytestmark = pytest.mark.timeout(600)
+SHORT = "high_level_task_manager: {ros__parameters: {tasks: [walk 0.5 0.1 0.3]}}"
 REAL = importlib.util.find_spec("rpyutils") is not None
 needs_real = pytest.mark.skipif(not REAL, reason="real rclpy is not installed")
 
@@ -109,10 +111,15 @@ def test_it_walks_on_real_rclpy_in_real_time() -> None:
 
 
 @pytest.mark.slow
-def test_pictures_are_written(tmp_path: Path) -> None:
-    picture = tmp_path / "robot.png"
-    demo("--scenario", "dance", "--record", str(picture))
-    assert picture.read_bytes().startswith(b"\x89PNG")
+@pytest.mark.parametrize(("name", "begins"), [("robot.png", b"\x89PNG"), ("robot.gif", b"GIF89a")])
+def test_pictures_are_written(name: str, begins: bytes, tmp_path: Path) -> None:
+    picture, scenario = tmp_path / name, tmp_path / "short.yaml"
+    scenario.write_text(SHORT)
+    demo("--scenario", str(scenario), "--record", str(picture))
+    assert picture.read_bytes().startswith(begins)
+    with Image.open(picture) as image:
+        frames = getattr(image, "n_frames", 1)
+        assert frames == 1 or 50 < frames < 100  # ten for a second
 
 
 def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
@@ -120,14 +127,17 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
     broken.write_text(write_mjcf().replace("l_knee", "l_kneee"))
     for words, expected in (
         (["--model", str(broken)], "no joint 'l_knee'"),
-        (["--record", "x.mp4"], "ends in .gif or .png"),
+        (["--record", "x.avi"], "ends in .gif, .mp4 or .png"),
         (["--record", str(tmp_path / "none" / "x.gif")], f"there is no folder {tmp_path / 'none'}"),
         (["--headless", "--web"], "--headless cannot be used with --web"),
         (["--port", "8001"], "--port needs --web"),
         (["--host", "0.0.0.0"], "--host needs --web"),
         (["--joint-map", __file__], "--joint-map needs --model"),
         (["--idle", "--scenario", "walk"], "--idle cannot be used with --scenario"),
-        (["--scenario", "polka"], "there is no scenario polka: choose one of all, dance, "),
+        (
+            ["--scenario", "polka"],
+            "there is no scenario polka: choose one of all, dance, ",
+        ),
         (["--without", "tail"], "the robot has no node 'tail': it has battery_monitor, "),
         (["--replace", "gait_planner"], "write NODE=FILE_OR_MODULE, such as gait_planner=mine.py"),
         (["--replace", "gait_planner=nobody.py"], "there is no file nobody.py"),
@@ -190,7 +200,7 @@ class Mine(GaitPlannerBase):
 def test_somebodys_own_gait_planner_walks(transport: str, tmp_path: Path) -> None:
     file, scenario = tmp_path / "mine.py", tmp_path / "short.yaml"
     file.write_text(MINE)
-    scenario.write_text("high_level_task_manager: {ros__parameters: {tasks: [walk 0.5 0.1 0.3]}}")
+    scenario.write_text(SHORT)
     words = ("--replace", f"gait_planner={file}", "--without", "teleop", "--transport", transport)
     summary = demo("--scenario", str(scenario), *words)
     assert (summary["outcome"], summary["falls"]) == ("done", "0")

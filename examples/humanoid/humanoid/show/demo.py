@@ -30,6 +30,7 @@ from ..simulation.rendering import RenderingError, check
 from . import crew, parts, report
 from .audience import Audience, AudienceError
 from .director import Director
+from .pictures import check_format
 from .recorder import Recorder, check_writable
 from .replacing import ReplacementError, checked, split
 from .scenarios import ScenarioFileError, read
@@ -98,6 +99,7 @@ def main(options: Options) -> int:
         load_model(*options.model_parameters)  # its errors should be reported before nodes start
         if options.record is not None:
             check_writable(options.record)
+            check_format(options.record)
             check()
     except (ModelError, RenderingError) as error:
         sys.exit(f"error: {error}")
@@ -135,7 +137,7 @@ class _Show:
         overrides = [Parameter(k, value=v) for k, v in self._scenario.get("audience", {}).items()]
         audience = Audience(parameter_overrides=[Parameter("use_sim_time", value=True), *overrides])
         self._director = Director(self._say, lambda: audience.is_over)
-        self._recorder = Recorder(load_model(*options.model_parameters)) if options.record else None
+        self._recorder = self._record_to(options.record) if options.record else None
         self._window = self._open_window() if options.window and display() else None
         if options.window and not display():
             print("no display for a window: see the robot with --web or --record FILE.gif", flush=True)
@@ -260,10 +262,13 @@ class _Show:
             while True:
                 self._executor.spin_once(timeout_sec=_TURN)
 
+    def _record_to(self, path: Path) -> Recorder:
+        return Recorder(load_model(*self._options.model_parameters), path)
+
     def _record(self, recorder: Recorder, path: Path) -> bool:
         """Write the pictures; returns whether that succeeded."""
         try:
-            recorder.save(path)
+            recorder.save(self._line.draws)
         except (RenderingError, OSError) as error:
             print(f"error: {path} was not written: {error}", file=sys.stderr)
             return False
