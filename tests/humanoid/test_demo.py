@@ -127,7 +127,10 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
         (["--host", "0.0.0.0"], "--host needs --web"),
         (["--joint-map", __file__], "--joint-map needs --model"),
         (["--idle", "--scenario", "walk"], "--idle cannot be used with --scenario"),
-        (["--scenario", "polka"], "there is no scenario polka: choose one of all, dance, push, stop, walk"),
+        (
+            ["--scenario", "polka"],
+            "there is no scenario polka: choose one of all, dance, obstacles, push, stop, walk",
+        ),
         (["--without", "tail"], "the robot has no node 'tail': it has battery_monitor, "),
         (["--replace", "gait_planner"], "write NODE=FILE_OR_MODULE, such as gait_planner=mine.py"),
         (["--replace", "gait_planner=nobody.py"], "there is no file nobody.py"),
