@@ -134,7 +134,7 @@ class _Show:
         self._director = Director(self._say, lambda: audience.is_over)
         self._recorder = self._record_to(options.record) if options.record else None
         self._window = self._open_window() if options.window and display() else None
-        if options.window and not display():
+        if options.window and not display() and not options.record:
             print("no display for a window: see the robot with --web or --record FILE.gif", flush=True)
         known = crew.all_nodes()
         self._without = {checked(name, known) for name in options.without}
