@@ -137,7 +137,7 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
         (["--idle", "--scenario", "walk"], "--idle cannot be used with --scenario"),
         (
             ["--scenario", "polka"],
-            "there is no scenario polka: choose one of all, dance, obstacles, push, stop, walk",
+            "there is no scenario polka: choose one of all, dance, ",
         ),
         (["--without", "tail"], "the robot has no node 'tail': it has battery_monitor, "),
         (["--replace", "gait_planner"], "write NODE=FILE_OR_MODULE, such as gait_planner=mine.py"),

@@ -37,7 +37,7 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
     default="all",
     show_default=True,
     shell_complete=_complete,
-    help="What to show: all, dance, push, stop, walk, or a .yaml file of yours.",
+    help="What to show: all, dance, obstacles, push, stop, walk, or a .yaml file of yours.",
 )
 @click.option("--idle", is_flag=True, help="No scenario: the robot stands, and waits for other programs.")
 @click.option("--without", metavar="NODE", multiple=True, help="Leave out a node; may be repeated.")
@@ -76,7 +76,11 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
     is_flag=True,
     help="No faster than real time, as with a window or page; on real rclpy also not in lockstep.",
 )
-@click.option("--camera", is_flag=True, help="Let the robot also look for faces, which takes time.")
+@click.option(
+    "--camera/--no-camera",
+    default=None,
+    help="Whether the robot sees, which takes time; by default on the local transport.",
+)
 @click.option(
     "--seed",
     type=click.IntRange(0, _GREATEST),
@@ -100,7 +104,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     port: int,
     host: str | None,
     realtime: bool,
-    camera: bool,
+    camera: bool | None,
     seed: int,
     model: Path | None,
     joint_map: Path | None,

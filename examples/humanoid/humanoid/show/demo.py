@@ -77,9 +77,14 @@ class Options:
     realtime: bool = False
     seed: int = 0
     noise: bool = True
-    camera: bool = False
+    camera: bool | None = None  # None: where time waits for the pictures
     model: Path | None = None
     joint_map: Path | None = None
+
+    @property
+    def sees(self) -> bool:
+        """Whether the robot sees."""
+        return self.transport == "local" if self.camera is None else self.camera
 
     @property
     def model_parameters(self) -> tuple[str, str]:
@@ -169,7 +174,7 @@ class _Show:
             )
 
     def _members(self, group: str) -> tuple[str, ...]:
-        names = crew.members(group, with_extra=self._options.camera)
+        names = crew.members(group, with_extra=self._options.sees)
         return tuple(name for name in names if name not in self._without)
 
     def play(self) -> int:
@@ -294,7 +299,7 @@ class _Show:
         model_file, joint_map = options.model_parameters
         body = {"model_file": model_file, "joint_map": joint_map}
         parameters = {**dict.fromkeys(crew.WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
-        parameters["camera_driver"] = {"streaming": options.camera}
+        parameters["camera_driver"] = {"streaming": options.sees}
         for node, values in self._scenario.items():
             parameters[node] = {**parameters.get(node, {}), **values}
         return parameters
