@@ -9,17 +9,19 @@ import numpy as np
 from ..kinematics.dynamics import RobotState
 from ..kinematics.legs import Legs
 from ..robot.model import HumanoidModel
-from ..robot.table import ARM_JOINTS, ARMS, LEGS, UPPER_BODY
+from ..robot.table import ARM_JOINTS, ARMS, HEAD, LEGS, UPPER_BODY
 from ..spatial import Array, quaternion_of, rotation_z
 from .fitting import fitted
 from .reference import GaitParameters, middle
 
+_NOD = 0.35  # rad: the camera sees the floor from 1.2 m ahead on, and faces of people
 _RELAXED = {"shoulder_pitch": 0.15, "shoulder_roll": 0.12, "elbow": -0.55}  # of the left arm
 
 
 def relaxed() -> Array:
     """Positions (17,) of waist, head and arms when no other posture is requested."""
     joints = np.zeros(29)
+    joints[HEAD] = (0.0, _NOD)
     for arm, sign in zip(ARMS, (1, -1), strict=True):
         joints[arm] = [
             _RELAXED.get(name, 0.0) * (sign if name.endswith(("roll", "yaw")) else 1) for name in ARM_JOINTS
