@@ -1,8 +1,8 @@
 """The table as URDF, for robot_description: the same links, joints, masses and frames as in the MJCF.
 
-URDF has no capsules and no ellipsoids. Capsules collide as cylinders of the same length, ellipsoids as spheres,
-and both look like several shapes; masses and inertias are theirs. The floating joint of base_link and the servos
-have no place in URDF.
+URDF has no capsules and no ellipsoids. Capsules collide as cylinders of the same length, ellipsoids as
+spheres, and both look like several shapes; masses and inertias are theirs. The floating joint of base_link
+and the servos have no place in URDF.
 """
 
 from __future__ import annotations
