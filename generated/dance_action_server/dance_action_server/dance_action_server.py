@@ -40,7 +40,7 @@ class DanceActionServer(DanceActionServerBase):
     async def on_joint_states(self, message: JointState) -> None:
         """Take the joint positions."""
         try:
-            self._joints = messages.read_joint_states(message)
+            self._joints = messages.read_joint_states(message, self._body)
         except ValueError as error:
             self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
 
@@ -57,7 +57,7 @@ class DanceActionServer(DanceActionServerBase):
         """Accept a known dance while the robot stands and does not dance; the log says why others are not."""
         if self._stop.active or (self._gait is not None and self._gait.mode is not data.Mode.STANDING):
             await self._news.next()
-        why_not = problem(goal.dance, goal.tempo, self.parameters.dances)
+        why_not = problem(goal.dance, goal.tempo, self.parameters.dances, self._body)
         preempts = self._performance is not None and self.parameters.second_goal == "preempt"
         if self._performance is not None and not preempts:
             why_not = "I am dancing already, and second_goal says reject"
@@ -119,7 +119,7 @@ class DanceActionServer(DanceActionServerBase):
         if performance.handle.is_cancel_requested or performance.preempted:
             performance.dance.cancel()
         tick = performance.dance.update(gait.stamp, joints, gait)
-        self.publish_posture(messages.posture(tick.posture, gait.stamp))
+        self.publish_posture(messages.posture(tick.posture, gait.stamp, self._body))
         if tick.plan is not None:
             self.publish_footsteps_plan(messages.footstep_plan(tick.plan, gait.stamp))
         performance.beats += 1

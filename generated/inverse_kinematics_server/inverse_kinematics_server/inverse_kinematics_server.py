@@ -31,6 +31,7 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         humanoid = load_model(self.parameters.model_file, self.parameters.joint_map)
+        self._body = humanoid.body
         self._solver = InverseKinematics(humanoid)
         self._head = HeadPose(humanoid)
         self._legs = RobotState(humanoid)
@@ -39,7 +40,7 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
     def on_joint_states(self, message: JointState) -> None:
         """Take the joint positions, for requests without a seed."""
         try:
-            self._joints = messages.read_joint_states(message)
+            self._joints = messages.read_joint_states(message, self._body)
         except ValueError as error:
             self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
 
