@@ -124,6 +124,7 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
         (["--record", str(tmp_path / "none" / "x.gif")], f"there is no folder {tmp_path / 'none'}"),
         (["--headless", "--web"], "--headless cannot be used with --web"),
         (["--port", "8001"], "--port needs --web"),
+        (["--host", "0.0.0.0"], "--host needs --web"),
         (["--joint-map", __file__], "--joint-map needs --model"),
         (["--idle", "--scenario", "walk"], "--idle cannot be used with --scenario"),
         (["--scenario", "polka"], "there is no scenario polka: choose one of all, dance, push, stop, walk"),

@@ -233,7 +233,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "clock_period",
             Parameter.Type.DOUBLE,
-            0.004,
+            0.02,
             ParameterDescriptor(
                 description="Simulated time between two messages on /clock [s]; each message costs every node on that time a callback",
                 read_only=True,

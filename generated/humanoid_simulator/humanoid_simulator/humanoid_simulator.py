@@ -30,7 +30,7 @@ from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase
-from humanoid_simulator._humanoid_simulator_parameters import ParametersError
+from humanoid_simulator._humanoid_simulator_parameters import HumanoidSimulatorParameters, ParametersError
 
 _LOST = 0.1  # s that paced lockstep may lag behind the wall clock before the lost time is dropped
 _MADE_UP = 10  # periods that physics may lag behind in real time
@@ -72,6 +72,10 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         if self._camera is not None:
             self._camera.close()
         super().destroy_node()
+
+    def on_parameters_changed(self, parameters: HumanoidSimulatorParameters) -> None:
+        """Follow the wall clock at the new speed from here on."""
+        self._restart_wall()
 
     @property
     def stamp(self) -> int:

@@ -769,8 +769,8 @@ PARAMETERS = [
     ParameterCase(
         "clock_period",
         Parameter.Type.DOUBLE,
-        0.004,
-        [0.004, 0.001, 0.1, 0.0505, 0.002, 0.098],
+        0.02,
+        [0.02, 0.001, 0.1, 0.0505, 0.002, 0.098],
         [0.0, 0.102],
         description="Simulated time between two messages on /clock [s]; each message costs every node on that time a callback",
         read_only=True,

@@ -67,6 +67,11 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
     help="Port of the page; 0: any free one.",
 )
 @click.option(
+    "--host",
+    metavar="ADDRESS",
+    help="Address of the page for other machines, such as 0.0.0.0; its URL then has a token.",
+)
+@click.option(
     "--realtime",
     is_flag=True,
     help="No faster than real time, as with a window or page; on real rclpy also not in lockstep.",
@@ -93,6 +98,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     record: Path | None,
     web: bool,
     port: int,
+    host: str | None,
     realtime: bool,
     camera: bool,
     seed: int,
@@ -121,6 +127,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
         transport=transport,
         record=record,
         web=port if web else None,
+        host=host or "",
         window=not headless and not web,
         realtime=realtime,
         seed=seed,
@@ -140,7 +147,7 @@ def _problem(context: click.Context, record: Path | None) -> str:
     for one, other in (("headless", "web"), ("idle", "scenario")):
         if {one, other} <= given:
             return f"--{one} cannot be used with --{other}"
-    for option, needs in (("port", "web"), ("joint_map", "model")):
+    for option, needs in (("port", "web"), ("host", "web"), ("joint_map", "model")):
         if option in given and needs not in given:
             return f"--{option.replace('_', '-')} needs --{needs}"
     if record is None:

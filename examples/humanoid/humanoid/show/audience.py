@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -64,6 +65,12 @@ class Audience(Node):
     def is_over(self) -> bool:
         """Whether everything has happened."""
         return not self._waiting and not self._due
+
+    def play(self, texts: list[str], after: int) -> None:
+        """Play other events instead: times count from now, tasks from the one after number `after`."""
+        events = [event_of(text) for text in texts]
+        self._waiting = [replace(e, task=e.task + after) if e.task else e for e in events]
+        self._plan(lambda event: not event.task)
 
     def _on_task(self, message: TaskStatus) -> None:
         number, state = message.number, message.state

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import math
+import secrets
 import signal
 import subprocess
 import sys
@@ -37,6 +38,7 @@ from .window import Window, WindowError, display
 _LIMIT = 600.0  # s of real time for a scenario
 _TURN = 0.1  # s of real time between checks of windows and processes
 _DISCOVERY = 0.7  # s that DDS has to find another robot
+_TOKEN = 18  # bytes of the page's token
 _INTERRUPTED = "interrupted"
 _CODE_INTERRUPTED = 130  # as for all commands of ifgen
 _CODE_TERMINATED = 143
@@ -69,6 +71,7 @@ class Options:
     transport: str = "local"
     record: Path | None = None
     web: int | None = None  # the port; 0: any free one
+    host: str = ""  # another address than this machine's own; who has the page's token may come
     window: bool = False  # if there is a display
     realtime: bool = False
     seed: int = 0
@@ -150,7 +153,7 @@ class _Show:
             started = (parts.start([*documents, group, *names]) for group, names in groups.items())
             self._processes = list(started)
         if options.web is not None:
-            self._nodes.append(_serve(options.web))
+            self._nodes.append(_serve(options, audience))
         for node in self._nodes:
             self._executor.add_node(node)
 
@@ -280,7 +283,7 @@ class _Show:
         if options.transport != "local":
             # On real rclpy a message costs each receiver a hundred microseconds, and every node receives the
             # clock.
-            simulator["clock_period"] = simulator["ground_truth_period"] = 0.02
+            simulator["ground_truth_period"] = 0.02
         # A machine may be busy, and processes start and are discovered one after another.
         simulator["patience"] = 5.0
         model_file, joint_map = options.model_parameters
@@ -292,12 +295,16 @@ class _Show:
         return parameters
 
 
-def _serve(port: int) -> Node:
-    from .web.view_node import WebView  # its libraries take time to import
+def _serve(options: Options, audience: Audience) -> Node:
+    # Their libraries take time to import.
+    from .web.server import LOOPBACK
+    from .web.view_node import WebView
 
+    host, port = options.host or LOOPBACK, options.web or 0
+    token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port)
+        view = WebView(port, host, token, audience)
     except OSError as error:
-        sys.exit(f"error: 127.0.0.1:{port}: {error.strerror}; choose another port with --port, or 0 for any")
+        sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)
     return view
