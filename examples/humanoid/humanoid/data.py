@@ -184,6 +184,17 @@ class Stance:
         return np.array([(left[0] + right[0]) / 2, (left[1] + right[1]) / 2, yaw])
 
 
+@dataclass(frozen=True, slots=True)
+class BalanceState:
+    """BalanceState.msg: how the robot keeps its balance, in odom, metres."""
+
+    stamp: int
+    centre_of_mass: Array  # (3,)
+    capture_point: Array  # (2,)
+    zero_moment_point: Array  # (2,)
+    support: Array  # (n, 2)
+
+
 @dataclass(slots=True)
 class GaitState:
     """GaitState.msg: the state of the whole-body controller at a control tick."""

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from ..data import (
+    BalanceState,
     EmergencyStop,
     FootstepPlan,
     GaitState,
@@ -34,6 +35,7 @@ from .inputs import LATE, LEASE, Inputs, Leases
 from .posture import level, relaxed, standing
 from .reference import GaitParameters, Sample
 from .stepping import Stepping
+from .support import support_polygon
 
 _FALLEN_HEIGHT = 0.68  # of base_link, as a share of the legs' length
 _RECOVERY = 1_000_000_000  # ns without a fault until the robot takes commands again
@@ -88,6 +90,7 @@ class WholeBodyController:
         self._stamp = 0
         self._elapsed = self._period  # since the last tick, seconds
         self.error = np.zeros(2)  # of the DCM at the last tick, metres
+        self._zmp: Array | None = None  # where the soles had to press at the last tick (2,)
 
     def follow(self, plan: FootstepPlan) -> str:
         """Walk on these footsteps from the next tick on; returns why not, or ""."""
@@ -157,6 +160,18 @@ class WholeBodyController:
             self.stepping.index,
             self.stepping.sample.phase,
         )
+
+    def balance(self) -> BalanceState | None:
+        """How the robot kept its balance at the last tick; None if it did not balance yet."""
+        if self._zmp is None or self._fallen:
+            return None
+        swing = self.stepping.sample.swing
+        swinging = swing.leg.side if swing else None
+        carrying = [self._state.planar_sole(side) for side in (0, 1) if side != swinging]
+        com = self._state.com
+        capture = com[:2] + self._state.com_velocity[:2] / self._omega
+        support = support_polygon(carrying, self.model.sole)
+        return BalanceState(self._stamp, com.copy(), capture, self._zmp, support)
 
     def tick(self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None) -> JointCommand:
         """The set-points that answer the newest readings, at a moment of simulated time.
@@ -253,6 +268,7 @@ class WholeBodyController:
             self.model.sole,
             parameters,
         )
+        self._zmp = load.zmp
         height = parameters.com_height - self._squat
         torque = balance.torques(state, load, self._omega, height)
         way = _JOINT_SPEED * self._elapsed

@@ -15,12 +15,13 @@ from ..spatial import Array, quaternion_of, rotation_z
 from .fitting import fitted
 from .reference import GaitParameters, middle
 
+_NOD = 0.35  # rad: the camera sees the floor from 1.2 m ahead on, and faces of people
 _RELAXED = {"shoulder_pitch": 0.15, "shoulder_roll": 0.12, "elbow": -0.55}  # of the left arm
 
 
 def relaxed(body: Body = OURS) -> Array:
     """Positions of waist, head and arms when no other posture is requested, as `body.upper_body`."""
-    pose = {}
+    pose = {"head_pitch": _NOD}
     for name, position in _RELAXED.items():
         pose[f"l_{name}"] = position
         pose[f"r_{name}"] = -position if name.endswith(("roll", "yaw")) else position

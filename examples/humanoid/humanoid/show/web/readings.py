@@ -10,6 +10,7 @@ from typing import Any
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import (
+    BalanceState,
     BatteryStatus,
     DetectedObjectArray,
     EmergencyStop,
@@ -85,6 +86,15 @@ def _footsteps(message: FootstepPlan) -> dict[str, Any]:
 
 def _gait(message: GaitState) -> dict[str, str]:
     return {"mode": _constant(GaitState, "MODE_", message.mode), "reason": message.reason}
+
+
+def _balance(message: BalanceState) -> dict[str, Any]:
+    capture, zmp = message.capture_point, message.zero_moment_point
+    return {
+        "capture": rounded(capture.x, capture.y),
+        "zmp": rounded(zmp.x, zmp.y),
+        "support": [rounded(point.x, point.y) for point in message.support.points],
+    }
 
 
 def _battery(message: BatteryStatus) -> dict[str, Any]:
@@ -183,6 +193,7 @@ READINGS: Mapping[str, Reading] = {
     "/odom": Reading(Odometry, "base", _odometry),
     "/footsteps/upcoming": Reading(FootstepPlan, "footsteps", _footsteps, latched=True),
     "/gait_state": Reading(GaitState, "gait", _gait, latched=True),
+    "/whole_body_controller/balance": Reading(BalanceState, "balance", _balance),
     "/battery": Reading(BatteryStatus, "battery", _battery, latched=True),
     "/emergency_stop": Reading(EmergencyStop, "stop", _stop, latched=True),
     "/high_level_task_manager/task": Reading(TaskStatus, "task", _task, latched=True),

@@ -198,7 +198,7 @@ class WebView(Node):
             self.page.show("picture", 0)
         else:
             return True, ""
-        if self._stream.service_is_ready():  # a driver that streams only on demand
+        if on and self._stream.service_is_ready():  # off again it would make the robot blind
             value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=on)
             self._stream.call_async(
                 SetParameters.Request(parameters=[Parameter(name="streaming", value=value)])
