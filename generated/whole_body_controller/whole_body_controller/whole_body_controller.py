@@ -72,7 +72,7 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_joint_states(self, message: JointState) -> None:
         """Take angles and velocities."""
         try:
-            joints = messages.read_joint_states(message)
+            joints = messages.read_joint_states(message, self._controller.model.body)
         except ValueError as error:
             self._health.takes("readings", f"/joint_states: {error}")
             return
@@ -109,7 +109,7 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_posture(self, message: JointState) -> None:
         """Bring the upper body to a posture."""
         try:
-            posture = messages.read_posture(message)
+            posture = messages.read_posture(message, self._controller.model.body)
             why_not = self._controller.posture(posture)
         except ValueError as error:
             posture, why_not = None, str(error)
