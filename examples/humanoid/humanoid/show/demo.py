@@ -313,7 +313,7 @@ def _serve(options: Options, audience: Audience) -> Node:
     host, port = options.host or LOOPBACK, options.web or 0
     token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port, host, token, audience)
+        view = WebView(port, host, token, audience, "" if options.idle else options.scenario)
     except OSError as error:
         sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)

@@ -89,7 +89,7 @@ class PageServer:
 
     @property
     def url(self) -> str:
-        """The address of the page, with its token if it has one; for all addresses, one that others can use."""
+        """The address of the page, with its token if it has one; others can open it if they may."""
         query = f"?token={self.token}" if self.token else ""
         host = _own_address() if self._host == _ANY else self._host
         return f"http://{host}:{self.port}/{query}"
