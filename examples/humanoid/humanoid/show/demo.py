@@ -183,7 +183,7 @@ class _Show:
         try:
             for _ in self._turns():
                 if self._director.is_over and not self._options.idle:
-                    problem = "; ".join(self._director.score.failures)
+                    problem = "; ".join(dict.fromkeys(self._director.score.failures))
                     break
             else:
                 problem = f"not over after {_LIMIT:.0f} s"
