@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import socket
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -16,6 +17,8 @@ import pytest
 from humanoid.robot.mjcf import write_mjcf
 from ifgen_pytest.domains import own_domain
 from PIL import Image
+
+from .bodies import offset_hips
 
 pytestmark = pytest.mark.timeout(600)
 SHORT = "high_level_task_manager: {ros__parameters: {tasks: [walk 0.5 0.1 0.3]}}"
@@ -61,6 +64,19 @@ def test_the_same_seed_gives_the_same_states_also_from_a_file(tmp_path: Path) ->
     runs = [["--seed", "3"], ["--seed", "3", "--model", str(model)], ["--seed", "4"]]
     first, second, other = (demo("--scenario", "stop", *run)["state hash"] for run in runs)
     assert first == second != other
+
+
+@pytest.mark.slow
+def test_another_body_walks_and_waves(tmp_path: Path) -> None:
+    model, tasks = tmp_path / "own.xml", tmp_path / "tasks.yaml"
+    model.write_text(offset_hips())
+    tasks.write_text("/high_level_task_manager: {ros__parameters: {tasks: [walk 1 0.4 0.8, dance wave]}}")
+    summary = demo("--model", str(model), "--scenario", str(tasks))
+    assert summary["outcome"] == "done"
+    assert summary["falls"] == "0"
+    assert summary["dances"] == "1"
+    assert float(summary["foot error"].split()[0]) <= 20
+    assert float(summary["goal error"].split()[0]) <= 40
 
 
 @pytest.mark.slow
@@ -246,11 +262,15 @@ def refused(words: list[str], expected: str) -> None:
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a pseudo-terminal")
 def test_on_a_terminal_log_lines_are_not_garbled_and_ctrl_c_exits_with_130() -> None:
+    import fcntl
     import pty
+    import termios
 
     ours, theirs = pty.openpty()
+    fcntl.ioctl(ours, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 40, 0, 0))  # a narrow window
     command = [sys.executable, "-m", "ifgen", "demo", "--headless", "--scenario", "stop"]
-    process = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs)
+    environment = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
+    process = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs, env=environment)
     os.close(theirs)
     seen = b""
     with contextlib.suppress(OSError):  # Linux raises it when nobody is at the other end any longer
@@ -264,7 +284,8 @@ def test_on_a_terminal_log_lines_are_not_garbled_and_ctrl_c_exits_with_130() -> 
     lines = [line.rstrip("\r").rpartition("\r")[2] for line in seen.decode().split("\n")]
     (logged,) = [line for line in lines if "[emergency_stop]: emergency stop" in line]
     assert re.fullmatch(r"(\x1b\[\d*m)?\[ERROR\] .*", logged)
-    assert all(len(line) < 80 for line in seen.decode().split("\r") if "real time" in line)
+    progress = [line.removeprefix("\x1b[K") for line in seen.decode().split("\r") if " steps, " in line]
+    assert max(map(len, progress)) == 39
     assert any("interrupted" in line for line in lines)
 
 

@@ -1,7 +1,8 @@
 """The data that nodes exchange: plain classes, each carried by a message of the same meaning.
 
-Times are integer nanoseconds of simulated time. Arrays over joints are in the order of `robot.JOINT_NAMES`
-(29,). Quaternions are (x, y, z, w). Planar poses are (x, y, yaw) on the floor. World means the frame odom.
+Times are integer nanoseconds of simulated time. Arrays over joints are in the order of the robot's
+`Body.joints`, for ours 29. Quaternions are (x, y, z, w). Planar poses are (x, y, yaw) on the floor. World
+means the frame odom.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ import numpy as np
 from .spatial import Array
 
 SECOND = 1_000_000_000
+STOP_CALLED = "somebody called ~/stop"
+"""The reason of a controller that holds because it was asked to: it waits for new footsteps."""
 STEP_TIME = 0.6  # seconds from lift-off to touchdown, unless another time is requested
 
 
@@ -75,7 +78,7 @@ class Cause(IntEnum):
 
 @dataclass(slots=True)
 class JointStates:
-    """sensor_msgs/JointState: positions in rad, velocities in rad/s, efforts in N m, each (29,)."""
+    """sensor_msgs/JointState: positions in rad, velocities in rad/s, efforts in N m, each (joints,)."""
 
     stamp: int
     position: Array
@@ -126,7 +129,7 @@ class Odometry:
 
 @dataclass(slots=True)
 class JointCommand:
-    """std_msgs/Float64MultiArray for the servos: set-points in rad (29,), and the tick they answer."""
+    """std_msgs/Float64MultiArray for the servos: set-points in rad (joints,), and the tick they answer."""
 
     stamp: int
     position: Array
@@ -135,7 +138,7 @@ class JointCommand:
 
 @dataclass(slots=True)
 class Posture:
-    """Set-points of waist, head and arms (17,) in rad, as JOINT_NAMES[12:], and a lower pelvis."""
+    """Set-points of waist, head and arms in rad, as `Body.upper_body`, and a lower pelvis."""
 
     position: Array
     squat: float = 0.0  # distance by which the pelvis is lowered, metres

@@ -11,6 +11,8 @@ from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid import data
 from humanoid.control.posture import start
 from humanoid.robot import table
+from humanoid.robot.body import OURS
+from humanoid.robot.description import describe_robot
 from humanoid.robot.external import load_model
 from humanoid.robot.obstacles import Solid, random_solids, solids_of
 from humanoid.robot.urdf import write_urdf
@@ -64,7 +66,9 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._blind = False  # no image can be drawn here
         self._losses = generator(self.parameters.seed, "camera")
         self._begin()
-        self.publish_robot_description(String(data=write_urdf()))
+        self.publish_robot_description(
+            String(data=write_urdf() if self._model.body is OURS else describe_robot(self._model))
+        )
         self.publish_tf_static(TFMessage(transforms=[_identity("map", "odom")]))
 
     def destroy_node(self) -> None:
@@ -85,7 +89,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
     def on_joint_commands(self, message: JointState) -> None:
         """Give the servos new set-points; in lockstep, time waits for them."""
         try:
-            command = messages.read_joint_commands(message, table.JOINT_NAMES)
+            command = messages.read_joint_commands(message, self._model.body.joints)
         except ValueError as error:
             self._health.takes("set-points", f"/joint_commands: {error}")
             return
@@ -220,7 +224,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         sensors = self._sensors = self._sensors or self.simulator.sensors()
         self._answered = False
         self._sent = time.monotonic()
-        self.publish_joint_encoders(messages.joint_states(sensors.joints))
+        self.publish_joint_encoders(messages.joint_states(sensors.joints, self._model.body.joints))
         self.publish_imu_data(messages.imu(sensors.imu))
         self.publish_l_foot_wrench(messages.wrench(sensors.wrenches[0], "l_ankle"))
         self.publish_r_foot_wrench(messages.wrench(sensors.wrenches[1], "r_ankle"))

@@ -58,6 +58,7 @@ class NavigationActionServer(NavigationActionServerBase):
             walk.navigation.cancel()
         self._tick = tick = walk.navigation.update(self._gait)
         if tick.plan is not None:
+            walk.stopping = False  # it has held, or waited for a way, and goes on
             self._send(tick.plan)
         elif tick.stop and not walk.stopping:
             walk.stopping = True
@@ -121,6 +122,7 @@ class NavigationActionServer(NavigationActionServerBase):
             replan_distance=values.replan_distance,
             planner=_Ways(self, (x, y, yaw), goal.max_step_length).plan,
             patience=values.patience,
+            recovery_time=values.recovery_time,
         )
         if navigation.rejection:
             return self._refuse(goal_handle, navigation.rejection)
@@ -180,8 +182,6 @@ class NavigationActionServer(NavigationActionServerBase):
 
     def _send(self, plan: data.FootstepPlan) -> None:
         assert self._gait is not None
-        assert self._walk is not None
-        self._walk.stopping = False
         self._plan = plan
         self._sent = messages.footstep_plan(plan, self._gait.stamp)
         self.publish_footsteps_plan(self._sent)

@@ -28,7 +28,9 @@ class ObstacleMapper(ObstacleMapperBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         values = self.parameters
-        self._viewpoints = Viewpoints(load_model(values.model_file, values.joint_map))
+        model = load_model(values.model_file, values.joint_map)
+        self._body = model.body
+        self._viewpoints = Viewpoints(model)
         self._map = FloorMap(values.half_size, values.resolution)
         self._lens: Lens | None = None
         self._joints: JointState | None = None
@@ -61,7 +63,8 @@ class ObstacleMapper(ObstacleMapperBase):
         )
         if not problem:
             try:
-                picture, angles = read_image(message), messages.read_joint_states(joints).position
+                picture = read_image(message)
+                angles = messages.read_joint_states(joints, self._body).position
             except ValueError as error:
                 problem = str(error)
         if not problem and picture.shape[:2] != (lens.height, lens.width):

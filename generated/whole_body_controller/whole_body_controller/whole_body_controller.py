@@ -29,7 +29,6 @@ _STATE_PERIOD = 20_000_000  # ns between gait states while nothing in them chang
 _BALANCE_PERIOD = 40_000_000  # ns between messages about the balance, while somebody wants them
 _LATE = 3  # readings, or control periods, after which the controller uses what it has
 _POSTURE_LEASE = 500_000_000  # ns that a posture is valid: a dance sends one 50 times a second
-_STOPPED = "somebody called ~/stop"
 _HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP}
 
 
@@ -73,7 +72,7 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_joint_states(self, message: JointState) -> None:
         """Take angles and velocities."""
         try:
-            joints = messages.read_joint_states(message)
+            joints = messages.read_joint_states(message, self._controller.model.body)
         except ValueError as error:
             self._health.takes("readings", f"/joint_states: {error}")
             return
@@ -110,7 +109,7 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_posture(self, message: JointState) -> None:
         """Bring the upper body to a posture."""
         try:
-            posture = messages.read_posture(message)
+            posture = messages.read_posture(message, self._controller.model.body)
             why_not = self._controller.posture(posture)
         except ValueError as error:
             posture, why_not = None, str(error)
@@ -131,7 +130,7 @@ class WholeBodyController(WholeBodyControllerBase):
     def handle_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """End the step in the air and stand until new footsteps arrive."""
         self._stopped = True
-        self._controller.hold(_STOPPED)
+        self._controller.hold(data.STOP_CALLED)
         response.success = True
         return response
 

@@ -83,7 +83,7 @@ def distribute(
 
 
 def torques(state: RobotState, load: Load, omega: float, height: float) -> Array:
-    """Joint torques (29,) that make the ground push as `load` says and carry the robot's own weight.
+    """Joint torques (joints,) that make the ground push as `load` says and carry the robot's own weight.
 
     `omega` is the natural frequency [1/s], `height` the wanted height of the centre of mass [m].
     """

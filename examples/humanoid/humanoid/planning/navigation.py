@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..data import SECOND, Footstep, FootstepPlan, GaitState, Leg, Mode, Stance, Support
+from ..data import SECOND, STOP_CALLED, Footstep, FootstepPlan, GaitState, Leg, Mode, Stance, Support
 from ..robot.ground import Ground
 from ..spatial import Array, wrap
 from .footsteps import PlanResult, PlanStatus, StepLimits, plan_footsteps
@@ -20,6 +20,7 @@ _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
 _STOPPED = {Mode.HOLDING, Mode.EMERGENCY_STOP}
 _PATIENCE = 2 * SECOND  # ns within which the robot must begin to walk a plan
 _RETRY = SECOND  # ns between two attempts to find a way that is free
+_MOST_RECOVERIES = 20  # a robot that holds more often than that in a walk has a lasting problem
 _NOT_BEGUN = "nobody walks the plan: gait_planner is silent, or the plan was refused"
 
 
@@ -89,7 +90,7 @@ class WalkTick:
 class Navigation:
     """A goal under way. `rejection` says why it must not be accepted, or is ""."""
 
-    def __init__(  # noqa: PLR0913  # each option has a default, and is named
+    def __init__(  # noqa: PLR0913  # each is a parameter of the node, or of the goal
         self,
         goal: tuple[float, float, float],
         gait: GaitState,
@@ -101,12 +102,15 @@ class Navigation:
         replan_distance: float = 0.05,
         planner: Planner | None = None,
         patience: float = 30.0,
+        recovery_time: float = 0.0,
     ) -> None:
         """Plan for a goal; `under_way` is the plan that the robot follows now, if it walks.
 
         The remaining steps are planned anew once a sole has landed `replan_distance` [m] from its place.
         `planner` plans steps to the goal, straight ones if there is none; when no way is free, the goal is
         given up after `patience` [s].
+        A robot that has to hold, because readings or a node are missing, is awaited for `recovery_time` [s],
+        and walks on from where it is then.
         """
         self.goal = goal
         self._limits = limits or StepLimits()
@@ -117,6 +121,9 @@ class Navigation:
         self._checked = self._seen = gait.footstep_index
         self._planned = gait.stamp  # when the last new plan was made
         self._rounds = 0
+        self._recovery = round(recovery_time * SECOND)
+        self._recoveries = 0
+        self._held: int | None = None  # since when the robot has held
         self._cancelled = self._preempted = False
         self._planner: Planner = planner or self._straight
         self._awaited = False  # a plan, from the planner
@@ -172,14 +179,18 @@ class Navigation:
             result = self.stopped(gait, "whole_body_controller has restarted")
         elif gait.mode is Mode.FALLEN:
             result = self._result(Outcome.FELL, "the robot has fallen", gait)
-        elif gait.mode in _STOPPED:
+        elif gait.mode in _STOPPED and not self._recovers(gait):
             result = self.stopped(gait, gait.reason)
         elif self._preempted:
             result = self._result(Outcome.PREEMPTED, "a later goal took over", gait)
         elif self._cancelled:
             stop, plan = True, None
-            if gait.mode is Mode.STANDING:
+            if gait.mode in (Mode.STANDING, Mode.HOLDING):
                 result = self._result(Outcome.CANCELED, "canceled", gait)
+        elif gait.mode is Mode.HOLDING:
+            stop, plan = True, None
+        elif self._held is not None:
+            return self._resume(gait)
         elif plan is None:
             return self._go_on(gait)
         return self._tick(gait, plan=plan, stop=stop, result=result)
@@ -194,6 +205,22 @@ class Navigation:
                 return self._tick(gait, result=result)
             self._awaited = self._awaited or self._strayed(gait)
         return self._ask(gait) if self._awaited or self._blocked else self._tick(gait)
+
+    def _recovers(self, gait: GaitState) -> bool:
+        """Whether a robot that has stopped may yet walk on by itself."""
+        if gait.mode is not Mode.HOLDING or gait.reason == STOP_CALLED:
+            return False
+        if self._held is None:
+            self._held = gait.stamp
+            self._recoveries += 1
+        return gait.stamp - self._held < self._recovery and self._recoveries <= _MOST_RECOVERIES
+
+    def _resume(self, gait: GaitState) -> WalkTick:
+        """Walk on after holding, once the robot stands."""
+        if gait.mode is not Mode.STANDING:
+            return self._tick(gait)
+        self._held, self._awaited = None, True
+        return self._ask(gait)
 
     def _waiting(self, gait: GaitState) -> bool:
         """Whether the robot stands only because it has not yet begun to walk the plan."""
@@ -260,7 +287,12 @@ class Navigation:
     ) -> WalkTick:
         if plan is not None:
             self._planned = gait.stamp
-        return WalkTick(plan, stop, self._feedback(gait, plan is not None or self._awaited), result)
+        return WalkTick(
+            plan,
+            stop,
+            self._feedback(gait, plan is not None or self._awaited or self._held is not None),
+            result,
+        )
 
     def _plan_from(self, gait: GaitState) -> PlanResult | None:
         """A plan from the present stance, or from the one that the step in the air leads to."""

@@ -1,11 +1,13 @@
 """The table as URDF, for robot_description: the same links, joints, masses and frames as in the MJCF.
 
-URDF has no capsules, so they become cylinders of the same length without their round ends; masses and
-inertias are those of the capsules. The floating joint of base_link and the servos have no place in URDF.
+URDF has no capsules and no ellipsoids. Capsules collide as cylinders of the same length, ellipsoids as
+spheres, and both look like several shapes; masses and inertias are theirs. The floating joint of base_link
+and the servos have no place in URDF.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -14,7 +16,7 @@ from ..spatial import Array
 from . import table
 from .xmltext import add, document
 
-_TOP_SPEED = 20.0  # rad/s; URDF requires one
+TOP_SPEED = 20.0  # rad/s; URDF requires one
 
 
 def write_urdf() -> str:
@@ -27,7 +29,7 @@ def write_urdf() -> str:
             _place(joint, link.parent, link.name, link.origin)
             add(joint, "axis", xyz=link.joint.axis)
             limits = {"lower": link.joint.lower, "upper": link.joint.upper, "effort": link.joint.effort}
-            add(joint, "limit", velocity=_TOP_SPEED, **limits)
+            add(joint, "limit", velocity=TOP_SPEED, **limits)
             add(joint, "dynamics", damping=0.3, friction=0.05)
     for frame in table.FRAMES:
         add(root, "link", name=frame.name)
@@ -57,18 +59,41 @@ def _link(root: ElementTree.Element, link: table.Link) -> None:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.tolist()
     add(inertial, "inertia", ixx=xx, ixy=xy, ixz=xz, iyy=yy, iyz=yz, izz=zz)
     for shape in link.shapes:
-        for tag in ("visual", "collision"):
-            part = add(element, tag)
-            add(part, "origin", xyz=shape.position, rpy=(0.0, 0.0, 0.0))
-            _geometry(add(part, "geometry"), shape)
-            if tag == "visual":
-                material = add(
-                    part, "material", name="colour_" + "_".join(f"{c * 255:.0f}" for c in shape.colour)
-                )
-                add(material, "color", rgba=(*shape.colour, 1.0))
+        for part in looks(shape):
+            geometry(_coloured(element, part), part)
+        collision = add(element, "collision")
+        add(collision, "origin", xyz=shape.position, rpy=(0.0, 0.0, 0.0))
+        geometry(add(collision, "geometry"), shape)
 
 
-def _geometry(parent: ElementTree.Element, shape: table.Shape) -> None:
+def _coloured(link: ElementTree.Element, shape: table.Shape) -> ElementTree.Element:
+    """A visual at the place and in the colour of a shape; returns its geometry."""
+    visual = add(link, "visual")
+    add(visual, "origin", xyz=shape.position, rpy=(0.0, 0.0, 0.0))
+    geometry = add(visual, "geometry")
+    material = add(visual, "material", name="colour_" + "_".join(f"{c * 255:.0f}" for c in shape.colour))
+    add(material, "color", rgba=(*shape.colour, 1.0))
+    return geometry
+
+
+def looks(shape: table.Shape) -> list[table.Shape]:
+    """The shapes to show for one: a capsule with its round ends, a row of spheres for an ellipsoid."""
+    axis = int(np.argmax(shape.size))
+    if shape.kind == "capsule":
+        radius, away, axis = shape.size[0], shape.size[1], 2
+        sides: tuple[float, ...] = (-1, 1)
+    elif shape.kind == "ellipsoid":
+        radius = (sum(shape.size) - shape.size[axis]) / 2
+        away = shape.size[axis] - radius
+        sides = (-1, -0.5, 0, 0.5, 1)
+    else:
+        return [shape]
+    places = ([p + side * away * (i == axis) for i, p in enumerate(shape.position)] for side in sides)
+    ends = [replace(shape, kind="sphere", size=(radius, 0.0, 0.0), position=(x, y, z)) for x, y, z in places]
+    return ends if shape.kind == "ellipsoid" else [shape, *ends]
+
+
+def geometry(parent: ElementTree.Element, shape: table.Shape) -> None:
     """A shape without its position. An ellipsoid becomes a sphere with the radius of its middle half axis."""
     if shape.kind == "box":
         add(parent, "box", size=tuple(2 * half for half in shape.size))

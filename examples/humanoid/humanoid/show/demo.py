@@ -139,7 +139,7 @@ class _Show:
         self._director = Director(self._say, lambda: audience.is_over)
         self._recorder = self._record_to(options.record) if options.record else None
         self._window = self._open_window() if options.window and display() else None
-        if options.window and not display():
+        if options.window and not display() and not options.record:
             print("no display for a window: see the robot with --web or --record FILE.gif", flush=True)
         known = crew.all_nodes()
         self._without = {checked(name, known) for name in options.without}
@@ -183,7 +183,7 @@ class _Show:
         try:
             for _ in self._turns():
                 if self._director.is_over and not self._options.idle:
-                    problem = "; ".join(self._director.score.failures)
+                    problem = "; ".join(dict.fromkeys(self._director.score.failures))
                     break
             else:
                 problem = f"not over after {_LIMIT:.0f} s"
@@ -313,7 +313,7 @@ def _serve(options: Options, audience: Audience) -> Node:
     host, port = options.host or LOOPBACK, options.web or 0
     token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port, host, token, audience)
+        view = WebView(port, host, token, audience, "" if options.idle else options.scenario)
     except OSError as error:
         sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)

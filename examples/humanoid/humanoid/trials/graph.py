@@ -43,7 +43,8 @@ class Played(Generic[Result]):
 class NodeGraph:
     """The nodes of `crew.GROUPS`, connected only by messages; one graph at a time: it owns the context.
 
-    Only a robot that `sees` has camera, map and detection of faces: drawing takes time. `solids` are obstacles.
+    Only a robot that `sees` has a camera, a map, and the detection of faces: drawing takes time. `solids` are
+    obstacles.
 
     `true_state` lets the controller use ground truth as odometry.
     """

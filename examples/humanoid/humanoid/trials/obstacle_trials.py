@@ -45,8 +45,8 @@ def walk_through(seed: int) -> Scene:
     with NodeGraph(seed=seed, solids=solids, sees=True) as graph:
         try:
             played = graph.play(_walk)
-        except ScenarioError as error:
-            reason, seconds = str(error), graph.user.now
+        except ScenarioError as problem:
+            reason, seconds = str(problem), graph.user.now
         else:
             reason, seconds = played.result, played.simulated
         score = graph.user.score

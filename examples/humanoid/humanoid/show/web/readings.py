@@ -74,7 +74,7 @@ def _odometry(message: Odometry) -> list[float]:
 
 def _footsteps(message: FootstepPlan) -> dict[str, Any]:
     steps = [
-        [s.leg, *rounded(s.position.x, s.position.y, s.position.z, yaw_of(s.orientation))]
+        [s.leg, *rounded(s.position.x, s.position.y, s.position.z, yaw_of(s.orientation)), s.index]
         for s in message.steps
     ]
     goal = message.goal
@@ -84,8 +84,9 @@ def _footsteps(message: FootstepPlan) -> dict[str, Any]:
     }
 
 
-def _gait(message: GaitState) -> dict[str, str]:
-    return {"mode": _constant(GaitState, "MODE_", message.mode), "reason": message.reason}
+def _gait(message: GaitState) -> dict[str, Any]:
+    mode = _constant(GaitState, "MODE_", message.mode)
+    return {"mode": mode, "reason": message.reason, "next": message.footstep_index}
 
 
 def _balance(message: BalanceState) -> dict[str, Any]:
@@ -156,6 +157,7 @@ def _map(message: OccupancyGrid) -> dict[str, Any] | None:
 def _obstacles(message: MarkerArray) -> list[dict[str, Any]]:
     return [
         {
+            "name": marker.ns,
             "shape": _SHAPES[marker.type],
             "at": rounded(marker.pose.position.x, marker.pose.position.y, marker.pose.position.z),
             "yaw": round(yaw_of(marker.pose.orientation), 4),
