@@ -39,21 +39,21 @@ def test_a_wall_is_walked_round() -> None:
     assert route.status is RouteStatus.PLANNED
     assert room(route.places, WALL) >= CLEARANCE - 0.01
     shortest = 2 * math.hypot(1.5, 1.0 + CLEARANCE)
-    assert shortest - 0.2 < route.length < shortest * 1.12
+    assert shortest - 0.2 < route.length < shortest * 1.15
     assert len(route.places) < 7
 
 
 @pytest.mark.parametrize(
     ("goal", "points", "status", "why"),
     [
-        ((1.4, 0.3), WALL, RouteStatus.GOAL_OCCUPIED, "is 0.10 m from an obstacle; I keep 0.42 m"),
+        ((1.4, 0.3), WALL, RouteStatus.GOAL_OCCUPIED, "is 0.10 m from an obstacle; I keep 0.37 m"),
         ((math.nan, 0.3), WALL, RouteStatus.INVALID_REQUEST, "not finite"),
         ((3.0, 0.0), np.array([[0.1, 0.0]]), RouteStatus.BLOCKED, "where the robot stands"),
         (
             (3.0, 0.0),
             disc_points(Obstacle("ring", 0.0, 0.0, 1.0))[:24],
             RouteStatus.BLOCKED,
-            "no way of 0.84 m width leads to (3.00, 0.00)",
+            "no way of 0.74 m width leads to (3.00, 0.00)",
         ),
     ],
 )
