@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from humanoid import data
+from humanoid.control.pace import Pace
 from humanoid.planning.footsteps import PlanStatus, StepLimits, shorter
 from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
 from humanoid.robot.scene import GROUND
@@ -88,11 +89,12 @@ class NavigationActionServer(NavigationActionServerBase):
             self._end(before, result)
         x, y, yaw = (float(part) for part in messages.planar(goal.target.pose))
         values = self.parameters
+        limits = StepLimits().at_pace(Pace(values.walking_speed))
         navigation = Navigation(
             (x, y, yaw),
             self._gait,
             self._plan,
-            limits=shorter(StepLimits(), goal.max_step_length),
+            limits=shorter(limits, goal.max_step_length),
             ground=GROUND,
             tolerance=GoalTolerance(
                 goal.position_tolerance or values.tolerance.position,

@@ -225,6 +225,9 @@ class WholeBodyController:
             self.stepping.stand([state.planar_sole(side) for side in (0, 1)])
             self.stepping.com = state.com[:2]
             self._joints = joints.position.copy()
+            # The robot may stand higher or lower than it will walk: it goes there slowly.
+            floor = min(state.sole(side)[0][2] for side in (0, 1))
+            self._squat = self.parameters.com_height - float(state.com[2] - floor)
         lowest = min(state.sole(side)[0][2] for side in (0, 1))
         self._fallen = self._fallen or odometry.position[2] - lowest < _FALLEN_HEIGHT
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..spatial import Array, from_frame, to_frame
 
-_FORWARD = (-0.30, 0.36)  # of the landing, relative to the stance foot, metres
+_FORWARD = (-0.30, 0.45)  # of the landing, relative to the stance foot, metres
 _OUTWARD = (0.13, 0.42)
 FLOOR = 0.3
 _SPEED = 1.5  # speed at which the landing moves, m/s
