@@ -56,6 +56,18 @@ def test_a_node_of_sources_is_its_entry_point(sources: Path, tmp_path: Path) -> 
     ]
 
 
+def test_an_installed_share_is_no_source(tmp_path: Path) -> None:
+    """A launch file of an installation finds what is installed with it, although a package.xml is near."""
+    write(tmp_path / "share/ament_index/resource_index/packages/their_pkg", "")
+    write(tmp_path / "share/their_pkg/package.xml", "<package format='3'><name>their_pkg</name></package>")
+    file = write(tmp_path / "share/their_pkg/launch/their.launch.py", "")
+    script = write(tmp_path / "lib/their_pkg/talker", "#!/usr/bin/env python3\n")
+    script.chmod(0o755)
+    found = packages.find("their_pkg", tmp_path / "generated", [file])
+    assert found is not None
+    assert (found.prefix, found.executables["talker"].words) == (tmp_path, (str(script),))
+
+
 def test_an_installed_executable_is_found_by_the_index(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

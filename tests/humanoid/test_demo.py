@@ -124,6 +124,7 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
         (["--record", str(tmp_path / "none" / "x.gif")], f"there is no folder {tmp_path / 'none'}"),
         (["--headless", "--web"], "--headless cannot be used with --web"),
         (["--port", "8001"], "--port needs --web"),
+        (["--host", "0.0.0.0"], "--host needs --web"),
         (["--joint-map", __file__], "--joint-map needs --model"),
         (["--idle", "--scenario", "walk"], "--idle cannot be used with --scenario"),
         (["--scenario", "polka"], "there is no scenario polka: choose one of all, dance, push, stop, walk"),
@@ -203,6 +204,7 @@ def test_a_second_robot_in_the_same_domain_is_refused() -> None:
         with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as first:
             assert first.stdout is not None
             try:
+                assert first.stdout.readline().startswith("waking up")
                 assert "stands, and waits" in first.stdout.readline()
                 second = subprocess.run(
                     command, capture_output=True, text=True, timeout=60, env=environment, check=False
@@ -254,3 +256,46 @@ def test_on_a_terminal_log_lines_are_not_garbled_and_ctrl_c_exits_with_130() -> 
     assert re.fullmatch(r"(\x1b\[\d*m)?\[ERROR\] .*", logged)
     assert all(len(line) < 80 for line in seen.decode().split("\r") if "real time" in line)
     assert any("interrupted" in line for line in lines)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc is a folder where nobody can write, root included")
+def test_a_film_that_cannot_be_written_is_refused_before_the_scenario() -> None:
+    refused(["--headless", "--record", "/proc/robot.gif"], "--record: /proc/robot.gif cannot be written")
+
+
+def test_a_seed_that_is_no_integer_of_a_parameter_is_refused() -> None:
+    refused(["--seed", str(2**63)], f"{2**63} is not in the range 0<=x<={2**63 - 1}")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs SIGTERM")
+def test_sigterm_ends_with_a_summary() -> None:
+    environment = {name: value for name, value in os.environ.items() if "DISPLAY" not in name}
+    command = [sys.executable, "-m", "ifgen", "demo", "--scenario", "stop"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as demo:
+        assert demo.stdout is not None
+        assert demo.stdout.readline() == "waking up the humanoid: scenario stop, seed 0\n"
+        assert "--web or --record FILE.gif" in demo.stdout.readline()
+        assert "walk to" in demo.stdout.readline()
+        demo.terminate()
+        said, _ = demo.communicate(timeout=60)
+    assert demo.returncode == 143
+    assert re.search(r"outcome +interrupted", said)
+
+
+@needs_real
+@pytest.mark.slow
+@pytest.mark.parametrize("seconds", [0.6, 1.2, 2.0])
+def test_an_early_ctrl_c_on_real_rclpy_shows_no_tracebacks(seconds: float) -> None:
+    command = [sys.executable, "-m", "ifgen", "demo", "--headless", "--transport", "rclpy"]
+    # A group of its own: a terminal sends Ctrl-C to the children, too.
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True
+    ) as demo:
+        assert demo.stdout is not None
+        assert demo.stdout.readline().startswith("waking up")
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            demo.wait(seconds)  # into the start of the processes, wherever that is
+        os.killpg(demo.pid, signal.SIGINT)
+        said, _ = demo.communicate(timeout=60)
+    assert "Traceback" not in said
+    assert demo.returncode == 130

@@ -49,6 +49,7 @@ LONG = {
     "test_user",
     "test_dying",
     "test_goals",
+    "test_page_commands",
     "test_parameters",
     "test_stalling",
     "test_stop",

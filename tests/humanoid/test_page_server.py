@@ -2,33 +2,39 @@
 
 from __future__ import annotations
 
+import hashlib
+import re
 import socket
 import struct
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+from urllib.parse import urljoin
 
 import pytest
 
 pytest.importorskip("mujoco")
 from humanoid.show.web import server
 
-BIG = {"text": "x" * 2**20}
+WEB = Path(server.__file__).parent
+BIG: dict[str, Any] = {"text": "x" * 2**20}
 LINGER_NOT = struct.pack("ii", 1, 0)
 
 
+Asked = list[Mapping[str, Any]]
+
+
 @pytest.fixture(scope="module")
-def page() -> Iterator[server.PageServer]:
-    pressed = [0]
+def asked() -> Asked:
+    """The commands that reached the robot."""
+    return []
 
-    def press() -> None:
-        pressed[0] += 1
 
-    documents = {
-        "/made": lambda: ("", "made"),
-        "/count": lambda: ("", str(pressed)),
-        "/big": lambda: ("", "x" * 2**25),
-    }
-    made = server.PageServer(0, documents, {"/press": press})
+@pytest.fixture(scope="module")
+def page(asked: Asked) -> Iterator[server.PageServer]:
+    documents = {"/made": lambda: ("", b"made"), "/big": lambda: ("", b"x" * 2**25)}
+    made = server.PageServer(0, documents, lambda command: (not asked.append(command), "done"))
     yield made
     made.close()
 
@@ -65,14 +71,99 @@ def test_no_other_page_can_frame_it(page: server.PageServer, path: str) -> None:
     assert "Content-Security-Policy: frame-ancestors 'none'" in headers
 
 
-@pytest.mark.parametrize("method", ["GET", "POST"])
-def test_a_body_is_no_second_request(page: server.PageServer, method: str) -> None:
-    inner = "POST /press HTTP/1.1\nHost: localhost\nX-Humanoid: 1\n\n"
-    outer = (
-        f"{method} /made HTTP/1.1\nHost: localhost\nConnection: keep-alive\nContent-Length: {len(inner)}\n\n"
-    )
+def command(host: str, *headers: str, body: str = '{"do": "stop"}') -> str:
+    lines = (f"Host: {host}", f"Content-Length: {len(body)}", *headers)
+    return "POST /command HTTP/1.1\n" + "\n".join(lines) + "\n\n" + body
+
+
+@pytest.mark.parametrize("method", ["GET /made", "POST /command"])
+def test_a_body_is_no_second_request(method: str, page: server.PageServer, asked: Asked) -> None:
+    inner = command("localhost", "X-Humanoid: 1")
+    outer = f"{method} HTTP/1.1\nHost: localhost\nConnection: keep-alive\nContent-Length: {len(inner)}\n\n"
     assert answer(page, outer + inner).count("HTTP/1.") == 1
-    assert answer(page, "GET /count HTTP/1.1\nHost: localhost\n\n").endswith("[0]")
+    assert asked == []
+
+
+def test_only_the_page_itself_commands(page: server.PageServer, asked: Asked) -> None:
+    own = f"127.0.0.1:{page.port}"
+    for refused in (
+        command(own),  # a form of another site cannot set our header
+        command(own, "X-Humanoid: 1", "Origin: http://evil.example"),
+        command(own, "X-Humanoid: 1", "Origin: null"),
+        command(own, "X-Humanoid: 1", f"Origin: http://localhost:{page.port}"),
+        command(own, "X-Humanoid: 1", f"Origin: https://{own}"),
+        command("evil.example", "X-Humanoid: 1", "Origin: http://evil.example"),
+    ):
+        assert answer(page, refused).startswith("HTTP/1.0 403 "), refused
+    assert asked == []
+    for accepted in (
+        command(own, "X-Humanoid: 1"),
+        command(own, "X-Humanoid: 1", f"Origin: http://{own}"),
+    ):
+        assert answer(page, accepted).endswith('{"accepted": true, "text": "done"}')
+    assert asked == [{"do": "stop"}] * 2
+    asked.clear()
+
+
+@pytest.mark.parametrize(
+    ("body", "length", "status"),
+    [
+        ("stop", "4", 400),
+        ("[1]", "3", 400),
+        ("[" * 4000, "4000", 400),
+        ("{}", "4097", 413),
+        ("{}", "-1", 413),
+        ("{}", "", 413),
+    ],
+)
+def test_what_is_no_command(
+    body: str, length: str, status: int, page: server.PageServer, asked: Asked
+) -> None:
+    request = f"POST /command HTTP/1.1\nHost: localhost\nX-Humanoid: 1\nContent-Length: {length}\n\n{body}"
+    assert answer(page, request).startswith(f"HTTP/1.0 {status} ")
+    assert asked == []
+
+
+def test_for_other_machines_it_needs_its_token() -> None:
+    with pytest.raises(ValueError, match=r"a page on 0\.0\.0\.0 needs a token"):
+        server.PageServer(0, {}, lambda _: (True, ""), "0.0.0.0")
+    page = server.PageServer(0, {}, lambda _: (True, "done"), "0.0.0.0", "secret")
+    try:
+        assert page.url == f"http://0.0.0.0:{page.port}/?token=secret"
+        host, name = f"robot.local:{page.port}", f"humanoid_{page.port}"
+        for line in ("", "Cookie: x=secret", f"Cookie: {name}=wrong", f"Cookie: {name}=", "Cookie: ;="):
+            for path in ("/", "/news", "/view.js", "/?token=wrong", "/?token="):
+                request = f"GET {path} HTTP/1.1\nHost: {host}\n{line}\n\n".replace("\n\n\n", "\n\n")
+                assert answer(page, request).startswith("HTTP/1.0 403 "), request
+        entrance = answer(page, f"GET /?token=secret HTTP/1.1\nHost: {host}\n\n")
+        assert entrance.startswith("HTTP/1.0 303 ")
+        assert "\r\nLocation: /\r\n" in entrance
+        cookie = f"{name}=secret"
+        assert f"\r\nSet-Cookie: {cookie}; HttpOnly; SameSite=Strict; Path=/\r\n" in entrance
+        assert "<title>" in answer(page, f"GET / HTTP/1.1\nHost: {host}\nCookie: a=b; {cookie}\n\n")
+        ours = ("X-Humanoid: 1", f"Cookie: {cookie}")
+        assert "403" in answer(page, command(host, "X-Humanoid: 1"))
+        assert "403" in answer(page, command(host, *ours, "Origin: http://evil.example"))
+        assert answer(page, command(host, *ours, f"Origin: http://{host}")).endswith('"text": "done"}')
+    finally:
+        page.close()
+
+
+def test_pages_that_come_late_get_the_present_state(page: server.PageServer) -> None:
+    page.show("mode", "walking")
+    page.show("time", 1.5)
+    page.show("time", 2.5)
+    with connected(page) as client:
+        client.sendall(b"GET /news HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        seen = b""
+        while b"2.5" not in seen:
+            seen += client.recv(2**16)
+        assert b'event: mode\ndata: "walking"\n\n' in seen
+        assert b"1.5" not in seen
+        assert page.watchers == 1
+        page.show("mode", "walking")  # no news
+        page.show("time", 3.5)
+        assert client.recv(2**16) == b"event: time\ndata: 3.5\n\n"
 
 
 def test_who_says_nothing_is_not_waited_for(page: server.PageServer, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -94,12 +185,12 @@ def test_who_takes_nothing_is_not_waited_for(
     monkeypatch.setattr(server._Handler, "timeout", 0.1)
     before = threading.active_count()
     with connected(page) as client:
-        client.sendall(b"GET /states HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        client.sendall(b"GET /news HTTP/1.1\r\nHost: localhost\r\n\r\n")
         assert client.recv(4) == b"HTTP"
         workers = [t for t in threading.enumerate() if "process_request_thread" in t.name]
         assert len(workers) == 1
-        for _ in range(200):
-            page.show(BIG)
+        for number in range(200):
+            page.show("big", BIG | {"number": number})
             workers[0].join(0.1)
             if not workers[0].is_alive():
                 break
@@ -109,14 +200,38 @@ def test_who_takes_nothing_is_not_waited_for(
 
 def test_who_resets_is_not_spoken_of(page: server.PageServer, capfd: pytest.CaptureFixture[str]) -> None:
     before = threading.active_count()
-    for path in ("/states", "/big"):
+    for path in ("/news", "/big"):
         with connected(page) as client:
             client.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
             assert client.recv(4) == b"HTTP"
             client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, LINGER_NOT)
-    for _ in range(200):
-        page.show(BIG)
+    for number in range(200):
+        page.show("big", BIG | {"number": number})
         if threading.active_count() <= before:
             break
     wait_for_threads(before)
     assert capfd.readouterr().err == ""
+
+
+def test_three_js_is_what_its_table_says() -> None:
+    folder = WEB / "three"
+    rows = re.findall(r"^\| ([0-9a-f]{64}) \| (\S+) \|", (folder / "README.md").read_text(), re.MULTILINE)
+    found = {(hashlib.sha256(path.read_bytes()).hexdigest(), path.name) for path in folder.iterdir()}
+    assert set(rows) == {(digest, name) for digest, name in found if name != "README.md"}
+
+
+def test_the_page_needs_nothing_from_elsewhere(page: server.PageServer) -> None:
+    """Every file that the page or one of its scripts names is served by it."""
+    names = {"three": "/three/three.module.js"}  # of the page's import map
+    seen: set[str] = set()
+    waiting = {"/"}
+    while waiting:
+        path = waiting.pop()
+        seen.add(path)
+        head, _, text = answer(page, f"GET {path} HTTP/1.1\nHost: localhost\n\n").partition("\r\n\r\n")
+        assert head.startswith("HTTP/1.0 200 "), path
+        pattern = r"""(?:src|href)="([^"]+)"|^(?:import|export)? ?[^;'"/*]*\bfrom ['"]([^'"]+)['"];$"""
+        found = {one or other for one, other in re.findall(pattern, text, re.MULTILINE)}
+        wanted = {urljoin(path, names.get(name, name)) for name in found if not name.startswith("data:")}
+        waiting |= wanted - seen
+    assert seen >= {"/view.js", "/style.css", "/three/three.core.js", "/three/OrbitControls.js"}

@@ -53,6 +53,9 @@ def test_the_wheels_have_everything_and_shadow_nothing(wheels: tuple[Path, Path]
         "ifgen/templates/message_package/message.j2",
         "ifgen/interfaces/std_msgs/msg/String.msg",
         "ifgen/generated/gait_planner/gait_planner/gait_planner.py",
+        "ifgen/examples/humanoid/humanoid/show/web/index.html",
+        "ifgen/examples/humanoid/humanoid/show/web/three/three.core.js",
+        "ifgen/examples/humanoid/humanoid/show/web/three/LICENSE",
     ):
         assert name in toolkit
     for name in (

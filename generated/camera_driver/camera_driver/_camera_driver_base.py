@@ -6,12 +6,15 @@ from abc import ABC, abstractmethod
 from contextlib import ExitStack
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.lifecycle import LifecycleNode, LifecyclePublisher, LifecycleState, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.service import Service
+from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 from sensor_msgs.msg import CameraInfo, Image
+from std_msgs.msg import Empty
 from std_srvs.srv import SetBool
 
 from camera_driver._camera_driver_parameters import (
@@ -27,6 +30,22 @@ HEAD_CAMERA_IMAGE_RAW_PUBLISHER_QOS = QoSProfile(
     durability=DurabilityPolicy.VOLATILE,
 )
 HEAD_CAMERA_CAMERA_INFO_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.BEST_EFFORT,
+    durability=DurabilityPolicy.VOLATILE,
+)
+HEAD_CAMERA_TRIGGER_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+)
+DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
+)
+HEAD_CAMERA_SENSOR_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.BEST_EFFORT,
@@ -53,6 +72,21 @@ class CameraDriverBase(LifecycleNode, ABC):
 
     `/head_camera/camera_info`, sensor_msgs/msg/CameraInfo.
     """
+    head_camera_trigger_publisher: LifecyclePublisher[Empty]
+    """Makes the sensor take a picture
+
+    `/head_camera/trigger`, std_msgs/msg/Empty.
+    """
+    diagnostics_publisher: LifecyclePublisher[DiagnosticArray]
+    """How many pictures the sensor did not deliver, or not as agreed
+
+    `/diagnostics`, diagnostic_msgs/msg/DiagnosticArray.
+    """
+    head_camera_sensor_subscription: Subscription[Image]
+    """The sensor's picture, rgb8
+
+    `/head_camera/sensor`, sensor_msgs/msg/Image.
+    """
     set_streaming_service: Service[SetBool]
     """Start or stop capturing
 
@@ -60,6 +94,8 @@ class CameraDriverBase(LifecycleNode, ABC):
     """
     capture_timer: Timer
     """Calls `on_capture_timer`."""
+    diagnostics_timer: Timer
+    """Calls `on_diagnostics_timer`."""
 
     def __init__(self, node_name: str = "camera_driver", **options: Any) -> None:
         """Take the options of `rclpy.node.Node`. Raises ParametersError for parameters that break rules."""
@@ -72,6 +108,11 @@ class CameraDriverBase(LifecycleNode, ABC):
             self.on_capture_timer,
         )
         self.capture_timer.cancel()
+        self.diagnostics_timer = self.create_timer(
+            1.0,
+            self.on_diagnostics_timer,
+        )
+        self.diagnostics_timer.cancel()
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Create all entities; an override does first what may fail, and then calls this one."""
@@ -94,6 +135,34 @@ class CameraDriverBase(LifecycleNode, ABC):
             self.destroy_lifecycle_publisher,
             self.head_camera_camera_info_publisher,
         )
+        self.head_camera_trigger_publisher = self.create_lifecycle_publisher(
+            Empty,
+            "/head_camera/trigger",
+            HEAD_CAMERA_TRIGGER_PUBLISHER_QOS,
+        )
+        self._configured.callback(
+            self.destroy_lifecycle_publisher,
+            self.head_camera_trigger_publisher,
+        )
+        self.diagnostics_publisher = self.create_lifecycle_publisher(
+            DiagnosticArray,
+            "/diagnostics",
+            DIAGNOSTICS_PUBLISHER_QOS,
+        )
+        self._configured.callback(
+            self.destroy_lifecycle_publisher,
+            self.diagnostics_publisher,
+        )
+        self.head_camera_sensor_subscription = self.create_subscription(
+            Image,
+            "/head_camera/sensor",
+            self.on_head_camera_sensor,
+            HEAD_CAMERA_SENSOR_SUBSCRIPTION_QOS,
+        )
+        self._configured.callback(
+            self.destroy_subscription,
+            self.head_camera_sensor_subscription,
+        )
         self.set_streaming_service = self.create_service(
             SetBool,
             "~/set_streaming",
@@ -110,11 +179,13 @@ class CameraDriverBase(LifecycleNode, ABC):
         answer = super().on_activate(state)
         if answer == TransitionCallbackReturn.SUCCESS:
             self.capture_timer.reset()
+            self.diagnostics_timer.reset()
         return answer
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Stop timers and silence publishers; an override calls this one last."""
         self.capture_timer.cancel()
+        self.diagnostics_timer.cancel()
         return super().on_deactivate(state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -137,6 +208,7 @@ class CameraDriverBase(LifecycleNode, ABC):
 
     def _end(self) -> None:
         self.capture_timer.cancel()
+        self.diagnostics_timer.cancel()
         self._configured.close()
 
     def publish_head_camera_image_raw(self, message: Image) -> None:
@@ -153,6 +225,27 @@ class CameraDriverBase(LifecycleNode, ABC):
         """
         self.head_camera_camera_info_publisher.publish(message)
 
+    def publish_head_camera_trigger(self, message: Empty) -> None:
+        """Publish on `/head_camera/trigger`.
+
+        Makes the sensor take a picture
+        """
+        self.head_camera_trigger_publisher.publish(message)
+
+    def publish_diagnostics(self, message: DiagnosticArray) -> None:
+        """Publish on `/diagnostics`.
+
+        How many pictures the sensor did not deliver, or not as agreed
+        """
+        self.diagnostics_publisher.publish(message)
+
+    @abstractmethod
+    def on_head_camera_sensor(self, message: Image) -> None:
+        """Take a message from `/head_camera/sensor`.
+
+        The sensor's picture, rgb8
+        """
+
     @abstractmethod
     def handle_set_streaming(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Answer a request to `~/set_streaming`.
@@ -163,6 +256,10 @@ class CameraDriverBase(LifecycleNode, ABC):
     @abstractmethod
     def on_capture_timer(self) -> None:
         """Called every `capture_period` [s]."""
+
+    @abstractmethod
+    def on_diagnostics_timer(self) -> None:
+        """Called every 1 s."""
 
     def on_parameters_changed(self, parameters: CameraDriverParameters) -> None:
         """Called after a change of parameters, which are `self.parameters` already; does nothing."""

@@ -50,6 +50,11 @@ class CameraDriverParameters:
     """Whether images are captured from the start, before anybody calls ~/set_streaming"""
     image: ImageParameters
     """The parameters `image.*`."""
+    fovy: float
+    """Vertical field of view of the lens, from its calibration [degrees]
+
+    Must be from 1.0 to 170.0. Can be set at start only.
+    """
     frame_id: str
     """Frame of the images: z forward, x right, y down (REP-103)
 
@@ -96,6 +101,7 @@ def read_parameters(node: Node) -> CameraDriverParameters:
             height=values["image.height"],
             encoding=values["image.encoding"],
         ),
+        fovy=values["fovy"],
         frame_id=values["frame_id"],
     )
 
@@ -134,7 +140,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "capture_period",
             Parameter.Type.DOUBLE,
-            0.2,
+            0.5,
             ParameterDescriptor(
                 description="Time between two images [s]",
                 read_only=True,
@@ -153,7 +159,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "image.width",
             Parameter.Type.INTEGER,
-            320,
+            160,
             ParameterDescriptor(
                 description="Width of an image [px]",
                 read_only=True,
@@ -164,7 +170,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "image.height",
             Parameter.Type.INTEGER,
-            240,
+            120,
             ParameterDescriptor(
                 description="Height of an image [px]",
                 read_only=True,
@@ -179,6 +185,17 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ParameterDescriptor(
                 description="How a pixel is stored",
                 additional_constraints='must be one of "rgb8", "bgr8", "mono8"',
+            ),
+        ),
+        (
+            "fovy",
+            Parameter.Type.DOUBLE,
+            60.0,
+            ParameterDescriptor(
+                description="Vertical field of view of the lens, from its calibration [degrees]",
+                read_only=True,
+                additional_constraints="must be from 1.0 to 170.0",
+                floating_point_range=[FloatingPointRange(from_value=1.0, to_value=170.0)],
             ),
         ),
         (
@@ -206,6 +223,9 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "image.encoding": (
         (lambda value: value in ["rgb8", "bgr8", "mono8"], 'must be one of "rgb8", "bgr8", "mono8"'),
+    ),
+    "fovy": (
+        (lambda value: 1.0 <= value <= 170.0, "must be from 1.0 to 170.0"),
     ),
     "frame_id": (
         (lambda value: len(value) > 0, "must not be empty"),

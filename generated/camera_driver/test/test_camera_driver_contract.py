@@ -28,6 +28,7 @@ pytest.importorskip("hypothesis", reason="it is not installed: pip install 'ifge
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 import builtin_interfaces.msg
+import diagnostic_msgs.msg
 import sensor_msgs.msg
 import std_msgs.msg
 import std_srvs.srv
@@ -87,8 +88,10 @@ def ignore(*_: Any) -> None:
 
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
+    "on_head_camera_sensor": idle,
     "handle_set_streaming": idle,
     "on_capture_timer": idle,
+    "on_diagnostics_timer": idle,
     "on_parameters_changed": ignore,
 }
 
@@ -190,6 +193,7 @@ STRINGS = st.text(CHARACTERS, max_size=12)
 UINT8S = st.integers(0, 255)
 FLOAT64S = st.floats(allow_nan=False)
 BOOLEANS = st.booleans()
+OCTETS = st.binary(min_size=1, max_size=1)
 
 # The values of messages, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
@@ -225,6 +229,21 @@ sensor_msgs_msg_CameraInfo = st.builds(
     binning_x=UINT32S,
     binning_y=UINT32S,
     roi=sensor_msgs_msg_RegionOfInterest,
+)
+std_msgs_msg_Empty = st.builds(std_msgs.msg.Empty)
+diagnostic_msgs_msg_KeyValue = st.builds(diagnostic_msgs.msg.KeyValue, key=STRINGS, value=STRINGS)
+diagnostic_msgs_msg_DiagnosticStatus = st.builds(
+    diagnostic_msgs.msg.DiagnosticStatus,
+    level=OCTETS,
+    name=STRINGS,
+    message=STRINGS,
+    hardware_id=STRINGS,
+    values=some(diagnostic_msgs_msg_KeyValue),
+)
+diagnostic_msgs_msg_DiagnosticArray = st.builds(
+    diagnostic_msgs.msg.DiagnosticArray,
+    header=std_msgs_msg_Header,
+    status=some(diagnostic_msgs_msg_DiagnosticStatus),
 )
 std_srvs_srv_SetBool_Request = st.builds(std_srvs.srv.SetBool.Request, data=BOOLEANS)
 std_srvs_srv_SetBool_Response = st.builds(std_srvs.srv.SetBool.Response, success=BOOLEANS, message=STRINGS)
@@ -268,6 +287,35 @@ PUBLISHERS = [
         "head_camera_camera_info_publisher",
         sensor_msgs_msg_CameraInfo,
     ),
+    Topic(
+        "/head_camera/trigger",
+        "std_msgs/msg/Empty",
+        std_msgs.msg.Empty,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_head_camera_trigger",
+        "head_camera_trigger_publisher",
+        std_msgs_msg_Empty,
+    ),
+    Topic(
+        "/diagnostics",
+        "diagnostic_msgs/msg/DiagnosticArray",
+        diagnostic_msgs.msg.DiagnosticArray,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_diagnostics",
+        "diagnostics_publisher",
+        diagnostic_msgs_msg_DiagnosticArray,
+    ),
+]
+SUBSCRIPTIONS = [
+    Topic(
+        "/head_camera/sensor",
+        "sensor_msgs/msg/Image",
+        sensor_msgs.msg.Image,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE),
+        "on_head_camera_sensor",
+        "head_camera_sensor_subscription",
+        sensor_msgs_msg_Image,
+    ),
 ]
 # fmt: on
 
@@ -303,6 +351,27 @@ def test_publisher(ros: Any, topic: Topic) -> None:
     def check(message: Any) -> None:
         publish = partial(getattr(node, topic.method), message)
         ros.deliver(publish, lambda: message in heard, f"message on {name}")
+
+    check()
+
+
+@pytest.mark.parametrize("topic", SUBSCRIPTIONS, ids=str)
+def test_subscription(ros: Any, topic: Topic) -> None:
+    """The topic has a subscription as described, and its callback takes any message."""
+    begun: list[Any] = []
+    ended: list[Any] = []
+    node = start(ros, noting(topic.method, begun, ended))
+    name = check_endpoint(ros, node, topic, ros.peer.get_subscriptions_info_by_topic)
+    publisher = ros.peer.create_publisher(topic.message, name, topic.qos)
+
+    @EXAMPLES
+    @given(topic.messages)
+    def check(message: Any) -> None:
+        if not ros.context.ok() or getattr(node, topic.attribute) not in node.subscriptions:
+            return  # the callback wants no more
+        publish = partial(publisher.publish, message)
+        ros.deliver(publish, lambda: (message,) in begun, f"call of {topic.method}")
+        wait_for_end(ros, begun, ended, topic.method)
 
     check()
 
@@ -398,8 +467,8 @@ PARAMETERS = [
     ParameterCase(
         "capture_period",
         Parameter.Type.DOUBLE,
-        0.2,
-        [0.2, 0.02, 10.0, 5.01, 0.021, 9.8],
+        0.5,
+        [0.5, 0.02, 10.0, 5.01, 0.021, 9.8],
         [0.019, 10.2],
         description="Time between two images [s]",
         read_only=True,
@@ -416,8 +485,8 @@ PARAMETERS = [
     ParameterCase(
         "image.width",
         Parameter.Type.INTEGER,
-        320,
-        [320, 16, 1920, 17, 1919],
+        160,
+        [160, 16, 1920, 17, 1919],
         [15, 1921],
         description="Width of an image [px]",
         read_only=True,
@@ -426,8 +495,8 @@ PARAMETERS = [
     ParameterCase(
         "image.height",
         Parameter.Type.INTEGER,
-        240,
-        [240, 16, 1080, 17, 1079],
+        120,
+        [120, 16, 1080, 17, 1079],
         [15, 1081],
         description="Height of an image [px]",
         read_only=True,
@@ -440,6 +509,16 @@ PARAMETERS = [
         ["rgb8", "bgr8", "mono8"],
         ["xxxx"],
         description="How a pixel is stored",
+    ),
+    ParameterCase(
+        "fovy",
+        Parameter.Type.DOUBLE,
+        60.0,
+        [60.0, 1.0, 170.0, 85.5, 1.02, 166.6],
+        [0.98, 173.4],
+        description="Vertical field of view of the lens, from its calibration [degrees]",
+        read_only=True,
+        range=(1.0, 170.0),
     ),
     ParameterCase(
         "frame_id",
@@ -548,11 +627,19 @@ TIMERS = [
     TimerCase(
         "on_capture_timer",
         "capture_timer",
-        0.2,
+        0.5,
         True,
         [
-            ("publish_head_camera_image_raw", sensor_msgs.msg.Image, "/head_camera/image_raw", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE), 0.0),
-            ("publish_head_camera_camera_info", sensor_msgs.msg.CameraInfo, "/head_camera/camera_info", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE), 0.0),
+            ("publish_head_camera_trigger", std_msgs.msg.Empty, "/head_camera/trigger", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE), 0.0),
+        ],
+    ),
+    TimerCase(
+        "on_diagnostics_timer",
+        "diagnostics_timer",
+        1.0,
+        True,
+        [
+            ("publish_diagnostics", diagnostic_msgs.msg.DiagnosticArray, "/diagnostics", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE), 0.0),
         ],
     ),
 ]

@@ -20,6 +20,17 @@ class ParametersError(Exception):
 class DanceActionServerParameters:
     """The parameters of the node dance_action_server."""
 
+    model_file: str
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its
+    legs allow
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     second_goal: str
     """Whether a goal that arrives during a dance ends that dance first (preempt) or is rejected (reject)
 
@@ -70,6 +81,8 @@ def read_parameters(node: Node) -> DanceActionServerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return DanceActionServerParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         second_goal=values["second_goal"],
         dances=values["dances"],
         tempo=values["tempo"],
@@ -107,6 +120,24 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its legs allow",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
         (
             "second_goal",
             Parameter.Type.STRING,

@@ -7,8 +7,10 @@ from typing import Any
 from humanoid import data
 from humanoid.planning.dance import Dance, DanceFeedback, problem
 from humanoid.planning.navigation import halted
+from humanoid.robot.body import load_body
 from humanoid.ros import messages
 from humanoid.ros.news import News
+from humanoid.ros.recent import LatestJoints
 from humanoid.ros.running import run
 from humanoid_interfaces.action import PerformDance
 from humanoid_interfaces.msg import EmergencyStop, GaitState
@@ -29,7 +31,8 @@ class DanceActionServer(DanceActionServerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._joints: data.JointStates | None = None
+        self._body = load_body(self.parameters.model_file, self.parameters.joint_map)
+        self._joints = LatestJoints(self)
         self._gait: data.GaitState | None = None
         self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)
@@ -37,10 +40,7 @@ class DanceActionServer(DanceActionServerBase):
 
     async def on_joint_states(self, message: JointState) -> None:
         """Take the joint positions."""
-        try:
-            self._joints = messages.read_joint_states(message)
-        except ValueError as error:
-            self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
+        self._joints.put(message)
 
     async def on_gait_state(self, message: GaitState) -> None:
         """Take the state of the controller."""
@@ -61,7 +61,7 @@ class DanceActionServer(DanceActionServerBase):
             why_not = "I am dancing already, and second_goal says reject"
         elif self._stop.active:
             why_not = f"emergency stop: {self._stop.reason}"
-        elif self._gait is None or self._joints is None:
+        elif self._gait is None or self._joints.get() is None:
             why_not = "the controller has not reported its state yet"
         elif halt := halted(self._gait):
             why_not = halt
@@ -87,7 +87,7 @@ class DanceActionServer(DanceActionServerBase):
             goal_handle.abort()
             return PerformDance.Result(message=halt[:255])
         tempo = goal.tempo or self.parameters.tempo
-        dance = Dance(goal.dance, tempo, goal.beats, self._gait.stamp)
+        dance = Dance(goal.dance, tempo, goal.beats, self._gait.stamp, self._body)
         performance = self._performance = _Performance(dance, goal_handle)
         result = await performance.ended
         if result.completed:
@@ -107,8 +107,8 @@ class DanceActionServer(DanceActionServerBase):
 
     async def on_beat_timer(self) -> None:
         """Publish the next posture."""
-        performance, gait, joints = self._performance, self._gait, self._joints
-        if performance is None or gait is None or joints is None:
+        performance, gait = self._performance, self._gait
+        if performance is None or gait is None or (joints := self._joints.get()) is None:
             return
         if silent := self._silence(gait):
             performance.ended.set_result(performance.dance.stopped(gait, silent))

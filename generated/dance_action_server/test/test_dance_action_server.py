@@ -43,7 +43,9 @@ def dancer(ros: Any) -> tuple[Any, Any]:
 
     client = ActionClient(peer, PerformDance, "/perform_dance")
     ros.spin_until(client.server_is_ready, "the dance server")
-    ros.deliver(report, lambda: node._gait is not None and node._joints is not None, "state of the robot")
+    ros.deliver(
+        report, lambda: node._gait is not None and node._joints.get() is not None, "state of the robot"
+    )
     return client, report
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 from geometry_msgs.msg import Pose, Vector3
 from humanoid.ros import messages
+from humanoid.ros.images import read_image
 from humanoid.ros.running import run
 from humanoid.sensing.face_detection import LABEL, Detection, detect
 from humanoid_interfaces.msg import DetectedObject, DetectedObjectArray
@@ -18,11 +18,9 @@ from std_msgs.msg import Header
 from face_detection._face_detection_base import FaceDetectionBase
 from face_detection._face_detection_parameters import ParametersError
 
-_PLANES = {"rgb8": 3, "bgr8": 3, "mono8": 1}
-
 
 class FaceDetection(FaceDetectionBase):
-    """Examines every image as it arrives; there are five per second."""
+    """Examines every image as it arrives."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -36,19 +34,13 @@ class FaceDetection(FaceDetectionBase):
 
     def on_head_camera_image_raw(self, message: Image) -> None:
         """Look for faces."""
-        planes = _PLANES.get(message.encoding)
-        if planes is None or len(message.data) != message.height * message.step:
-            text = f"an image with encoding '{message.encoding}' cannot be read: send rgb8, bgr8 or mono8"
-            self.get_logger().warning(text, throttle_duration_sec=5.0)
-            return
         if not self._fovy or LABEL not in self.parameters.labels:
             return
-        rows = np.frombuffer(message.data, dtype=np.uint8).reshape(message.height, message.step)
-        picture = rows[:, : message.width * planes].reshape(message.height, message.width, planes)
-        if message.encoding == "bgr8":
-            picture = picture[:, :, ::-1]
-        elif planes == 1:
-            picture = np.repeat(picture, 3, axis=2)
+        try:
+            picture = read_image(message)
+        except ValueError as error:
+            self.get_logger().warning(str(error), throttle_duration_sec=5.0)
+            return
         found = [d for d in detect(picture, self._fovy) if d.confidence >= self.parameters.min_confidence]
         objects = [_object(detection) for detection in found[: self.parameters.max_detections]]
         self._latest = DetectedObjectArray(header=message.header, objects=objects)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 from humanoid import data
 from humanoid.control.pace import Pace
-from humanoid.planning.footsteps import PlanStatus, StepLimits, plan_footsteps, shorter
+from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, plan_footsteps, shorter
+from humanoid.robot.body import load_body
 from humanoid.robot.scene import GROUND
 from humanoid.ros import messages
 from humanoid.ros.running import run
@@ -21,6 +23,10 @@ _FRAMES = ("", "odom")
 
 class FootstepGenerationServer(FootstepGenerationServerBase):
     """Answers requests with plans; it moves nothing."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._body = load_body(self.parameters.model_file, self.parameters.joint_map)
 
     def handle_plan_footsteps(
         self, request: PlanFootsteps.Request, response: PlanFootsteps.Response
@@ -71,7 +77,7 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
             width=self.parameters.stance_width,
         ).at_pace(Pace(self.parameters.walking_speed))
         wanted = messages.nanoseconds(request.step_time) / data.SECOND or usual.step_time
-        return shorter(replace(usual, step_time=wanted), request.max_step_length)
+        return shorter(fitted(replace(usual, step_time=wanted), self._body), request.max_step_length)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -7,9 +7,9 @@ from typing import Any
 from geometry_msgs.msg import Point, Twist, Vector3
 from humanoid import data
 from humanoid.control.pace import Pace
-from humanoid.planning.footsteps import StepLimits
+from humanoid.planning.footsteps import StepLimits, fitted
 from humanoid.planning.gait import GaitPlanner as Planner
-from humanoid.robot import table
+from humanoid.robot.body import load_body
 from humanoid.ros import messages
 from humanoid.ros.diagnostics import Health
 from humanoid.ros.running import run
@@ -43,8 +43,10 @@ class GaitPlanner(GaitPlannerBase):
             turn=step.turn_max,
             trailing_turn=step.turn_max / 2,
             width=self.parameters.stance_width,
-        )
-        self._planner = Planner(limits.at_pace(pace), pace.double_support)
+        ).at_pace(pace)
+        body = load_body(self.parameters.model_file, self.parameters.joint_map)
+        self._foot = body.foot
+        self._planner = Planner(fitted(limits, body), pace.double_support)
         self._upcoming = FootstepPlan()  # as last published
         self._asked = FootstepPlan()  # the last plan with steps
         self._walking = False  # whether the robot walks it
@@ -87,7 +89,7 @@ class GaitPlanner(GaitPlannerBase):
         if plan is not None:
             self._upcoming = messages.footstep_plan(plan, state.stamp)
             self.publish_footsteps_upcoming(self._upcoming)
-            self.publish_markers(_markers(plan, state.stamp))
+            self.publish_markers(_markers(plan, self._foot, state.stamp))
 
     def handle_clear(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Stop the robot."""
@@ -114,10 +116,10 @@ class GaitPlanner(GaitPlannerBase):
         return int(self.get_clock().now().nanoseconds)
 
 
-def _markers(plan: data.FootstepPlan, stamp: int) -> MarkerArray:
-    """The steps as boxes, after a marker that deletes all older ones."""
+def _markers(plan: data.FootstepPlan, foot: tuple[float, float], stamp: int) -> MarkerArray:
+    """The steps as boxes of a foot's length and width, after a marker that deletes all older ones."""
     markers = [Marker(header=messages.header(stamp, "odom"), action=Marker.DELETEALL)]
-    size = Vector3(x=table.FOOT_LENGTH, y=table.FOOT_WIDTH, z=_THICKNESS)
+    size = Vector3(x=foot[0], y=foot[1], z=_THICKNESS)
     for step in plan.steps:
         pose = messages.planar_pose(step.x, step.y, step.yaw)
         pose.position = Point(x=step.x, y=step.y, z=_THICKNESS / 2)

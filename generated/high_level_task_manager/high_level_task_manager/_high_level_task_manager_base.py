@@ -90,7 +90,7 @@ class HighLevelTaskManagerBase(Node, ABC):
     `/posture`, sensor_msgs/msg/JointState.
     """
     speech_text_subscription: Subscription[String]
-    """Spoken commands, such as `walk home`, `dance wave`, `stop`
+    """Spoken commands, such as `walk home`, `dance wave`, `stop`, or `stop all` to drop what waits, too
 
     `/speech/text`, std_msgs/msg/String.
     """
@@ -231,7 +231,7 @@ class HighLevelTaskManagerBase(Node, ABC):
     async def on_speech_text(self, message: String) -> None:
         """Take a message from `/speech/text`.
 
-        Spoken commands, such as `walk home`, `dance wave`, `stop`
+        Spoken commands, such as `walk home`, `dance wave`, `stop`, or `stop all` to drop what waits, too
         """
 
     @abstractmethod

@@ -55,8 +55,10 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         self._tell(TaskStatus.STATE_IDLE)
 
     async def on_speech_text(self, message: String) -> None:
-        """Add what was said as the next task; `stop` ends the present one."""
-        if message.data == "stop":
+        """Add what was said as the next task; `stop` ends the present one, `stop all` those that wait, too."""
+        if message.data in {"stop", "stop all"}:
+            if message.data == "stop all":
+                self.manager.forget()
             await self._cancel()
             return
         x, y, yaw = self.parameters.home

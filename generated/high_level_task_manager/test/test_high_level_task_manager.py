@@ -100,3 +100,12 @@ def test_it_points_and_looks_where_the_kinematics_say(ros: Any) -> None:
 def test_what_is_no_task_is_not_done(ros: Any) -> None:
     robot = Robot(ros, "fly", "wait 0.1")
     assert robot.until(TaskStatus.STATE_SUCCEEDED, 1).words == "wait 0.1"
+
+
+def test_stop_all_drops_what_waits(ros: Any) -> None:
+    robot = Robot(ros, "wait 100", "dance waltz")
+    robot.until(TaskStatus.STATE_RUNNING, 1)
+    robot.speech.publish(String(data="stop all"))
+    assert robot.until(TaskStatus.STATE_CANCELED, 1).waiting == 0
+    robot.until(TaskStatus.STATE_IDLE, 1)
+    assert robot.danced == []

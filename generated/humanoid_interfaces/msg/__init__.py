@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from humanoid_interfaces.msg._footstep import Footstep as Footstep
     from humanoid_interfaces.msg._footstep_plan import FootstepPlan as FootstepPlan
     from humanoid_interfaces.msg._gait_state import GaitState as GaitState
+    from humanoid_interfaces.msg._obstacle_motion import ObstacleMotion as ObstacleMotion
+    from humanoid_interfaces.msg._obstacle_touch import ObstacleTouch as ObstacleTouch
     from humanoid_interfaces.msg._stance import Stance as Stance
     from humanoid_interfaces.msg._task_status import TaskStatus as TaskStatus
 
@@ -27,6 +29,8 @@ __all__ = [
     "Footstep",
     "FootstepPlan",
     "GaitState",
+    "ObstacleMotion",
+    "ObstacleTouch",
     "Stance",
     "TaskStatus",
 ]
@@ -41,6 +45,8 @@ __getattr__, __dir__ = lazy_exports(
         "Footstep": "_footstep",
         "FootstepPlan": "_footstep_plan",
         "GaitState": "_gait_state",
+        "ObstacleMotion": "_obstacle_motion",
+        "ObstacleTouch": "_obstacle_touch",
         "Stance": "_stance",
         "TaskStatus": "_task_status",
     },

@@ -262,6 +262,17 @@ humanoid_interfaces_msg_GaitState = st.builds(
     footstep_index=UINT32S,
     phase=FLOAT32S,
 )
+humanoid_interfaces_msg_ObstacleMotion = st.builds(
+    humanoid_interfaces.msg.ObstacleMotion,
+    name=st.text(CHARACTERS, max_size=64) | st.just("x" * 64),
+    position=geometry_msgs_msg_Point,
+)
+humanoid_interfaces_msg_ObstacleTouch = st.builds(
+    humanoid_interfaces.msg.ObstacleTouch,
+    header=std_msgs_msg_Header,
+    obstacle=st.text(CHARACTERS, max_size=64) | st.just("x" * 64),
+    link=st.text(CHARACTERS, max_size=64) | st.just("x" * 64),
+)
 humanoid_interfaces_msg_TaskStatus = st.builds(
     humanoid_interfaces.msg.TaskStatus,
     header=std_msgs_msg_Header,
@@ -626,6 +637,18 @@ CASES = [
             "phase": ["0.0", 1e39],
         },
         nan={"phase": NAN},
+    ),
+    Case(
+        humanoid_interfaces.msg.ObstacleMotion,
+        humanoid_interfaces_msg_ObstacleMotion,
+        fields={"name": "string<64>", "position": "geometry_msgs/Point"},
+        refused={"name": [0, "x" * 65], "position": [None]},
+    ),
+    Case(
+        humanoid_interfaces.msg.ObstacleTouch,
+        humanoid_interfaces_msg_ObstacleTouch,
+        fields={"header": "std_msgs/Header", "obstacle": "string<64>", "link": "string<64>"},
+        refused={"header": [None], "obstacle": [0, "x" * 65], "link": [0, "x" * 65]},
     ),
     Case(
         humanoid_interfaces.msg.Stance,

@@ -7,7 +7,7 @@ from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
-from humanoid_interfaces.msg import Stance
+from humanoid_interfaces.msg import ObstacleMotion, ObstacleTouch, Stance
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -19,10 +19,11 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.timer import Timer
 from rosgraph_msgs.msg import Clock as rosgraph_msgs_msg_Clock
-from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState
-from std_msgs.msg import Bool, String
+from sensor_msgs.msg import BatteryState, Image, Imu, JointState
+from std_msgs.msg import Bool, Empty, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import MarkerArray
 
 from humanoid_simulator._humanoid_simulator_parameters import (
     HumanoidSimulatorParameters,
@@ -67,13 +68,7 @@ R_FOOT_CONTACT_PUBLISHER_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
-HEAD_CAMERA_IMAGE_RAW_PUBLISHER_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.BEST_EFFORT,
-    durability=DurabilityPolicy.VOLATILE,
-)
-HEAD_CAMERA_CAMERA_INFO_PUBLISHER_QOS = QoSProfile(
+HEAD_CAMERA_SENSOR_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.BEST_EFFORT,
@@ -111,6 +106,17 @@ GROUND_TRUTH_STANCE_PUBLISHER_QOS = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.BEST_EFFORT,
 )
+OBSTACLES_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+TOUCHES_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
+)
 JOINT_COMMANDS_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
@@ -119,6 +125,16 @@ JOINT_COMMANDS_SUBSCRIPTION_QOS = QoSProfile(
 PUSH_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
+)
+MOVE_OBSTACLE_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
+)
+HEAD_CAMERA_TRIGGER_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
 )
 
@@ -167,15 +183,10 @@ class HumanoidSimulatorBase(Node, ABC):
 
     `/r_foot/contact`, std_msgs/msg/Bool.
     """
-    head_camera_image_raw_publisher: Publisher[Image]
-    """What the head camera sees, while anybody subscribes
+    head_camera_sensor_publisher: Publisher[Image]
+    """What the sensor of the head camera delivers to its driver, rgb8, one picture for each trigger
 
-    `/head_camera/image_raw`, sensor_msgs/msg/Image.
-    """
-    head_camera_camera_info_publisher: Publisher[CameraInfo]
-    """The calibration of the camera
-
-    `/head_camera/camera_info`, sensor_msgs/msg/CameraInfo.
+    `/head_camera/sensor`, sensor_msgs/msg/Image.
     """
     battery_state_publisher: Publisher[BatteryState]
     """Voltage and current, once a second, computed from the power that the joints draw
@@ -207,6 +218,16 @@ class HumanoidSimulatorBase(Node, ABC):
 
     `~/ground_truth/stance`, humanoid_interfaces/msg/Stance.
     """
+    obstacles_publisher: Publisher[MarkerArray]
+    """Where the obstacles really are, to show them; the namespace of each marker is its name
+
+    `~/obstacles`, visualization_msgs/msg/MarkerArray.
+    """
+    touches_publisher: Publisher[ObstacleTouch]
+    """The robot has begun to touch an obstacle, for measurements only
+
+    `~/touches`, humanoid_interfaces/msg/ObstacleTouch.
+    """
     joint_commands_subscription: Subscription[JointState]
     """Position set-points [rad] for servos, by joint name, with the stamp of the sensor values that they
     answer. A servo without a new one keeps its last
@@ -217,6 +238,16 @@ class HumanoidSimulatorBase(Node, ABC):
     """A push on the torso for 0.1 s, force [N] in map
 
     `~/push`, geometry_msgs/msg/WrenchStamped.
+    """
+    move_obstacle_subscription: Subscription[ObstacleMotion]
+    """Puts an obstacle elsewhere at once; not into the robot
+
+    `~/move_obstacle`, humanoid_interfaces/msg/ObstacleMotion.
+    """
+    head_camera_trigger_subscription: Subscription[Empty]
+    """Makes the sensor of the head camera take a picture now
+
+    `/head_camera/trigger`, std_msgs/msg/Empty.
     """
     reset_service: Service[Trigger]
     """Stand the robot up where it started
@@ -276,15 +307,10 @@ class HumanoidSimulatorBase(Node, ABC):
             "/r_foot/contact",
             R_FOOT_CONTACT_PUBLISHER_QOS,
         )
-        self.head_camera_image_raw_publisher = self.create_publisher(
+        self.head_camera_sensor_publisher = self.create_publisher(
             Image,
-            "/head_camera/image_raw",
-            HEAD_CAMERA_IMAGE_RAW_PUBLISHER_QOS,
-        )
-        self.head_camera_camera_info_publisher = self.create_publisher(
-            CameraInfo,
-            "/head_camera/camera_info",
-            HEAD_CAMERA_CAMERA_INFO_PUBLISHER_QOS,
+            "/head_camera/sensor",
+            HEAD_CAMERA_SENSOR_PUBLISHER_QOS,
         )
         self.battery_state_publisher = self.create_publisher(
             BatteryState,
@@ -316,6 +342,16 @@ class HumanoidSimulatorBase(Node, ABC):
             "~/ground_truth/stance",
             GROUND_TRUTH_STANCE_PUBLISHER_QOS,
         )
+        self.obstacles_publisher = self.create_publisher(
+            MarkerArray,
+            "~/obstacles",
+            OBSTACLES_PUBLISHER_QOS,
+        )
+        self.touches_publisher = self.create_publisher(
+            ObstacleTouch,
+            "~/touches",
+            TOUCHES_PUBLISHER_QOS,
+        )
         self.joint_commands_subscription = self.create_subscription(
             JointState,
             "/joint_commands",
@@ -327,6 +363,18 @@ class HumanoidSimulatorBase(Node, ABC):
             "~/push",
             self.on_push,
             PUSH_SUBSCRIPTION_QOS,
+        )
+        self.move_obstacle_subscription = self.create_subscription(
+            ObstacleMotion,
+            "~/move_obstacle",
+            self.on_move_obstacle,
+            MOVE_OBSTACLE_SUBSCRIPTION_QOS,
+        )
+        self.head_camera_trigger_subscription = self.create_subscription(
+            Empty,
+            "/head_camera/trigger",
+            self.on_head_camera_trigger,
+            HEAD_CAMERA_TRIGGER_SUBSCRIPTION_QOS,
         )
         self.reset_service = self.create_service(
             Trigger,
@@ -398,19 +446,12 @@ class HumanoidSimulatorBase(Node, ABC):
         """
         self.r_foot_contact_publisher.publish(message)
 
-    def publish_head_camera_image_raw(self, message: Image) -> None:
-        """Publish on `/head_camera/image_raw`.
+    def publish_head_camera_sensor(self, message: Image) -> None:
+        """Publish on `/head_camera/sensor`.
 
-        What the head camera sees, while anybody subscribes
+        What the sensor of the head camera delivers to its driver, rgb8, one picture for each trigger
         """
-        self.head_camera_image_raw_publisher.publish(message)
-
-    def publish_head_camera_camera_info(self, message: CameraInfo) -> None:
-        """Publish on `/head_camera/camera_info`.
-
-        The calibration of the camera
-        """
-        self.head_camera_camera_info_publisher.publish(message)
+        self.head_camera_sensor_publisher.publish(message)
 
     def publish_battery_state(self, message: BatteryState) -> None:
         """Publish on `/battery_state`.
@@ -454,6 +495,20 @@ class HumanoidSimulatorBase(Node, ABC):
         """
         self.ground_truth_stance_publisher.publish(message)
 
+    def publish_obstacles(self, message: MarkerArray) -> None:
+        """Publish on `~/obstacles`.
+
+        Where the obstacles really are, to show them; the namespace of each marker is its name
+        """
+        self.obstacles_publisher.publish(message)
+
+    def publish_touches(self, message: ObstacleTouch) -> None:
+        """Publish on `~/touches`.
+
+        The robot has begun to touch an obstacle, for measurements only
+        """
+        self.touches_publisher.publish(message)
+
     @abstractmethod
     def on_joint_commands(self, message: JointState) -> None:
         """Take a message from `/joint_commands`.
@@ -467,6 +522,20 @@ class HumanoidSimulatorBase(Node, ABC):
         """Take a message from `~/push`.
 
         A push on the torso for 0.1 s, force [N] in map
+        """
+
+    @abstractmethod
+    def on_move_obstacle(self, message: ObstacleMotion) -> None:
+        """Take a message from `~/move_obstacle`.
+
+        Puts an obstacle elsewhere at once; not into the robot
+        """
+
+    @abstractmethod
+    def on_head_camera_trigger(self, message: Empty) -> None:
+        """Take a message from `/head_camera/trigger`.
+
+        Makes the sensor of the head camera take a picture now
         """
 
     @abstractmethod

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -20,10 +20,41 @@ class ParametersError(Exception):
 class CameraParameters:
     """The parameters `camera.*`."""
 
-    rate: float
-    """Images per second of simulated time, while anybody subscribes to them [Hz]
+    width: int
+    """Width of the pictures of the camera's sensor [px]
 
-    Must be from 0.1 to 30.0.
+    Must be from 16 to 1920. Can be set at start only.
+    """
+    height: int
+    """Height of the pictures of the camera's sensor [px]
+
+    Must be from 16 to 1080. Can be set at start only.
+    """
+    loss: float
+    """Share of the pictures that get lost on the way from the sensor, at random
+
+    Must be from 0.0 to 1.0.
+    """
+
+
+@dataclass(frozen=True, slots=True)
+class RandomObstaclesParameters:
+    """The parameters `random_obstacles.*`."""
+
+    count: int
+    """How many more obstacles are put at random places, which depend on the seed
+
+    Must be from 0 to 50. Can be set at start only.
+    """
+    area: tuple[float, ...]
+    """Where they are put, x and y from, x and y to [m] in odom
+
+    Must have at most 4 elements. Must have exactly 4 elements. Can be set at start only.
+    """
+    free: tuple[float, ...]
+    """Places that they leave free, x and y of one after the other [m] in odom
+
+    Can be set at start only.
     """
 
 
@@ -80,6 +111,14 @@ class HumanoidSimulatorParameters:
     """
     camera: CameraParameters
     """The parameters `camera.*`."""
+    obstacles: tuple[str, ...]
+    """Solid obstacles: `NAME X Y [WIDTH [HEIGHT]]` [m] in odom; a name begins with a colour and box or
+    cylinder, such as `red_box 1.2 0.3`
+
+    Can be set at start only.
+    """
+    random_obstacles: RandomObstaclesParameters
+    """The parameters `random_obstacles.*`."""
     ground_truth: bool
     """Whether the true poses of base and soles are published
 
@@ -134,7 +173,15 @@ def read_parameters(node: Node) -> HumanoidSimulatorParameters:
         seed=values["seed"],
         noise=values["noise"],
         camera=CameraParameters(
-            rate=values["camera.rate"],
+            width=values["camera.width"],
+            height=values["camera.height"],
+            loss=values["camera.loss"],
+        ),
+        obstacles=values["obstacles"],
+        random_obstacles=RandomObstaclesParameters(
+            count=values["random_obstacles.count"],
+            area=values["random_obstacles.area"],
+            free=values["random_obstacles.free"],
         ),
         ground_truth=values["ground_truth"],
         ground_truth_period=values["ground_truth_period"],
@@ -186,7 +233,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "clock_period",
             Parameter.Type.DOUBLE,
-            0.004,
+            0.02,
             ParameterDescriptor(
                 description="Simulated time between two messages on /clock [s]; each message costs every node on that time a callback",
                 read_only=True,
@@ -261,13 +308,74 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ),
         ),
         (
-            "camera.rate",
-            Parameter.Type.DOUBLE,
-            5.0,
+            "camera.width",
+            Parameter.Type.INTEGER,
+            160,
             ParameterDescriptor(
-                description="Images per second of simulated time, while anybody subscribes to them [Hz]",
-                additional_constraints="must be from 0.1 to 30.0",
-                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=30.0)],
+                description="Width of the pictures of the camera's sensor [px]",
+                read_only=True,
+                additional_constraints="must be from 16 to 1920",
+                integer_range=[IntegerRange(from_value=16, to_value=1920)],
+            ),
+        ),
+        (
+            "camera.height",
+            Parameter.Type.INTEGER,
+            120,
+            ParameterDescriptor(
+                description="Height of the pictures of the camera's sensor [px]",
+                read_only=True,
+                additional_constraints="must be from 16 to 1080",
+                integer_range=[IntegerRange(from_value=16, to_value=1080)],
+            ),
+        ),
+        (
+            "camera.loss",
+            Parameter.Type.DOUBLE,
+            0.0,
+            ParameterDescriptor(
+                description="Share of the pictures that get lost on the way from the sensor, at random",
+                additional_constraints="must be from 0.0 to 1.0",
+                floating_point_range=[FloatingPointRange(from_value=0.0, to_value=1.0)],
+            ),
+        ),
+        (
+            "obstacles",
+            Parameter.Type.STRING_ARRAY,
+            [],
+            ParameterDescriptor(
+                description="Solid obstacles: `NAME X Y [WIDTH [HEIGHT]]` [m] in odom; a name begins with a colour and box or cylinder, such as `red_box 1.2 0.3`",
+                read_only=True,
+            ),
+        ),
+        (
+            "random_obstacles.count",
+            Parameter.Type.INTEGER,
+            0,
+            ParameterDescriptor(
+                description="How many more obstacles are put at random places, which depend on the seed",
+                read_only=True,
+                additional_constraints="must be from 0 to 50",
+                integer_range=[IntegerRange(from_value=0, to_value=50)],
+            ),
+        ),
+        (
+            "random_obstacles.area",
+            Parameter.Type.DOUBLE_ARRAY,
+            [0.6, -1.2, 3.4, 1.2],
+            ParameterDescriptor(
+                description="Where they are put, x and y from, x and y to [m] in odom",
+                read_only=True,
+                additional_constraints="must have at most 4 elements; must have exactly 4 elements",
+            ),
+        ),
+        (
+            "random_obstacles.free",
+            Parameter.Type.DOUBLE_ARRAY,
+            [0.0, 0.0, 4.0, 0.0],
+            ParameterDescriptor(
+                description="Places that they leave free, x and y of one after the other [m] in odom",
+                read_only=True,
             ),
         ),
         (
@@ -309,8 +417,21 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "seed": (
         (lambda value: value >= 0, "must be at least 0"),
     ),
-    "camera.rate": (
-        (lambda value: 0.1 <= value <= 30.0, "must be from 0.1 to 30.0"),
+    "camera.width": (
+        (lambda value: 16 <= value <= 1920, "must be from 16 to 1920"),
+    ),
+    "camera.height": (
+        (lambda value: 16 <= value <= 1080, "must be from 16 to 1080"),
+    ),
+    "camera.loss": (
+        (lambda value: 0.0 <= value <= 1.0, "must be from 0.0 to 1.0"),
+    ),
+    "random_obstacles.count": (
+        (lambda value: 0 <= value <= 50, "must be from 0 to 50"),
+    ),
+    "random_obstacles.area": (
+        (lambda value: len(value) <= 4, "must have at most 4 elements"),
+        (lambda value: len(value) == 4, "must have exactly 4 elements"),
     ),
     "ground_truth_period": (
         (lambda value: 0.001 <= value <= 1.0, "must be from 0.001 to 1.0"),
@@ -319,5 +440,8 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
 _CHECKS: dict[str, tuple[Callable[[Any], object], ...]] = {
 }
 _CONVERTERS: dict[str, Callable[[Any], Any]] = {
+    "obstacles": tuple,
+    "random_obstacles.area": tuple,
+    "random_obstacles.free": tuple,
 }
 # fmt: on

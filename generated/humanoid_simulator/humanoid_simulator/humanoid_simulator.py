@@ -2,36 +2,36 @@
 
 from __future__ import annotations
 
-import math
 import time
-from array import array
 from typing import Any
 
 import numpy as np
 from builtin_interfaces.msg import Time
 from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid import data
-from humanoid.control.posture import standing
-from humanoid.control.reference import GaitParameters
+from humanoid.control.posture import start
 from humanoid.robot import table
 from humanoid.robot.external import load_model
+from humanoid.robot.obstacles import Solid, random_solids, solids_of
 from humanoid.robot.urdf import write_urdf
-from humanoid.ros import messages
+from humanoid.ros import images, messages
 from humanoid.ros.diagnostics import Health
+from humanoid.ros.markers import obstacle_markers
 from humanoid.ros.running import run
+from humanoid.seeds import generator
 from humanoid.simulation.battery import BatteryPack
 from humanoid.simulation.rendering import HeadCamera, RenderingError
 from humanoid.simulation.sim import QUIET, Noise, Simulator
+from humanoid_interfaces.msg import ObstacleMotion, ObstacleTouch
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import BatteryState, CameraInfo, Image, JointState
-from std_msgs.msg import Bool, Header, String
+from sensor_msgs.msg import BatteryState, JointState
+from std_msgs.msg import Bool, Empty, String
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
 
 from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase
-from humanoid_simulator._humanoid_simulator_parameters import ParametersError
+from humanoid_simulator._humanoid_simulator_parameters import HumanoidSimulatorParameters, ParametersError
 
-_FEET = (np.array([0.0, table.STANCE_WIDTH / 2, 0.0]), np.array([0.0, -table.STANCE_WIDTH / 2, 0.0]))
 _LOST = 0.1  # s that paced lockstep may lag behind the wall clock before the lost time is dropped
 _MADE_UP = 10  # periods that physics may lag behind in real time
 _PUSH = 0.1  # s
@@ -51,14 +51,18 @@ class HumanoidSimulator(HumanoidSimulatorBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._model = load_model(self.parameters.model_file, self.parameters.joint_map)
+        solids = self._solids()
+        self._model = load_model(self.parameters.model_file, self.parameters.joint_map, solids)
         noise = Noise() if self.parameters.noise else QUIET
         self._period = round(self.parameters.control_period * data.SECOND)
-        self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period)
+        self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period, solids)
         self._battery = BatteryPack()
-        self._health = Health("humanoid_simulator: commands", self.get_logger(), "set-points", "pushes")
+        self._health = Health(
+            "humanoid_simulator: commands", self.get_logger(), "set-points", "pushes", "moves"
+        )
         self._paused = False
         self._blind = False  # no image can be drawn here
+        self._losses = generator(self.parameters.seed, "camera")
         self._begin()
         self.publish_robot_description(String(data=write_urdf()))
         self.publish_tf_static(TFMessage(transforms=[_identity("map", "odom")]))
@@ -68,6 +72,10 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         if self._camera is not None:
             self._camera.close()
         super().destroy_node()
+
+    def on_parameters_changed(self, parameters: HumanoidSimulatorParameters) -> None:
+        """Follow the wall clock at the new speed from here on."""
+        self._restart_wall()
 
     @property
     def stamp(self) -> int:
@@ -94,6 +102,16 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         possible = np.abs(force).max() <= _STRONGEST  # false for NaN too
         if self._health.takes("pushes", "" if possible else f"more than {_STRONGEST:g} N along an axis"):
             self.simulator.push(force, _PUSH)
+
+    def on_move_obstacle(self, message: ObstacleMotion) -> None:
+        """Put an obstacle elsewhere."""
+        why = self.simulator.obstacles.move(message.name, message.position.x, message.position.y)
+        if self._health.takes("moves", why):
+            self.publish_obstacles(obstacle_markers(self.simulator.obstacles.solids, self.stamp))
+
+    def on_head_camera_trigger(self, message: Empty) -> None:
+        """Take a picture."""
+        self._take_picture()
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Start again at time 0."""
@@ -143,7 +161,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self._step()
 
     def _begin(self) -> None:
-        posture, base = standing(self._model, _FEET, GaitParameters())
+        posture, base = start(self._model)
         self.simulator.reset(posture, base)
         self._contacts: tuple[bool, bool] | None = None
         self._due: dict[str, int] = {}  # things that are due periodically, and when they are due next
@@ -151,7 +169,22 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._commanded = False
         self._alone = False  # nobody answers any longer
         self._restart_wall()
+        self.publish_obstacles(obstacle_markers(self.simulator.obstacles.solids, self.stamp))
         self._publish()
+
+    def _solids(self) -> tuple[Solid, ...]:
+        """The obstacles that the parameters ask for."""
+        values = self.parameters
+        try:
+            solids = solids_of(values.obstacles)
+        except ValueError as error:
+            raise ParametersError(f"obstacles: {error}") from None
+        places = [*values.random_obstacles.free, *(part for s in solids for part in (s.x, s.y))]
+        if len(places) % 2:
+            raise ParametersError("random_obstacles.free: expected x and y of each place: an even count")
+        x, y, to_x, to_y = values.random_obstacles.area
+        free = list(zip(places[::2], places[1::2], strict=True))
+        return solids + random_solids(values.seed, values.random_obstacles.count, (x, y, to_x, to_y), free)
 
     def _restart_wall(self) -> None:
         """Align the wall clock with the present simulated time."""
@@ -173,6 +206,12 @@ class HumanoidSimulator(HumanoidSimulatorBase):
 
     def _step(self) -> None:
         self.simulator.step()
+        for touch in self.simulator.obstacles.look(self.stamp):
+            self.publish_touches(
+                ObstacleTouch(
+                    header=messages.header(touch.stamp, "odom"), obstacle=touch.obstacle, link=touch.link
+                )
+            )
         self._sensors = None
         self._publish()
 
@@ -209,8 +248,6 @@ class HumanoidSimulator(HumanoidSimulatorBase):
                 )
             )
             self.publish_diagnostics(self._health.report(self.stamp))
-        if self._is_time_for("picture", 1 / self.parameters.camera.rate):
-            self._take_picture()
         if self._is_time_for("clock", self.parameters.clock_period):
             self.publish_clock(Clock(clock=messages.time_of(self.stamp)))
 
@@ -223,45 +260,19 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         return True
 
     def _take_picture(self) -> None:
-        """Publish the image of the head camera, if anybody subscribes to it."""
-        if not self.head_camera_image_raw_publisher.get_subscription_count() or self._blind:
+        """Send the picture of this moment to the camera's driver, if one can be drawn and it is not lost."""
+        if self._blind:
             return
+        values = self.parameters.camera
         try:
-            self._camera = self._camera or HeadCamera(self._model)
+            self._camera = self._camera or HeadCamera(self._model, values.width, values.height)
         except RenderingError as error:
             self._blind = True
-            self.get_logger().error(str(error))
+            self.get_logger().warning(f"the robot is blind: {error}")
             return
-        picture = self._camera.picture(self.simulator)
-        height, width, planes = picture.shape
-        header = messages.header(self.stamp, table.CAMERA_FRAME)
-        self.publish_head_camera_camera_info(_camera_info(header, width, height))
-        self.publish_head_camera_image_raw(
-            Image(
-                header=header,
-                height=height,
-                width=width,
-                encoding="rgb8",
-                step=width * planes,
-                data=array("B", picture.tobytes()),
-            )
-        )
-
-
-def _camera_info(header: Header, width: int, height: int) -> CameraInfo:
-    """The calibration of a camera without distortion, from its vertical field of view."""
-    focal = height / 2 / math.tan(math.radians(table.CAMERA_FOVY) / 2)
-    x, y = width / 2, height / 2
-    return CameraInfo(
-        header=header,
-        height=height,
-        width=width,
-        distortion_model="plumb_bob",
-        d=[0.0] * 5,
-        k=[focal, 0.0, x, 0.0, focal, y, 0.0, 0.0, 1.0],
-        r=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
-        p=[focal, 0.0, x, 0.0, 0.0, focal, y, 0.0, 0.0, 0.0, 1.0, 0.0],
-    )
+        if self._losses.random() >= values.loss:
+            header = messages.header(self.stamp, table.CAMERA_FRAME)
+            self.publish_head_camera_sensor(images.image(header, self._camera.picture(self.simulator)))
 
 
 def _identity(parent: str, child: str) -> TransformStamped:

@@ -37,6 +37,7 @@ import sensor_msgs.msg
 import std_msgs.msg
 import std_srvs.srv
 import tf2_msgs.msg
+import visualization_msgs.msg
 from humanoid_simulator._humanoid_simulator_base import HumanoidSimulatorBase as NodeBase
 from humanoid_simulator.humanoid_simulator import HumanoidSimulator
 from hypothesis import HealthCheck, Phase, configuration, given, settings
@@ -83,6 +84,8 @@ def ignore(*_: Any) -> None:
 IDLE: dict[str, Any] = {
     "on_joint_commands": idle,
     "on_push": idle,
+    "on_move_obstacle": idle,
+    "on_head_camera_trigger": idle,
     "handle_reset": idle,
     "handle_pause": idle,
     "handle_step": idle,
@@ -241,28 +244,6 @@ sensor_msgs_msg_Image = st.builds(
     step=UINT32S,
     data=some(UINT8S),
 )
-sensor_msgs_msg_RegionOfInterest = st.builds(
-    sensor_msgs.msg.RegionOfInterest,
-    x_offset=UINT32S,
-    y_offset=UINT32S,
-    height=UINT32S,
-    width=UINT32S,
-    do_rectify=BOOLEANS,
-)
-sensor_msgs_msg_CameraInfo = st.builds(
-    sensor_msgs.msg.CameraInfo,
-    header=std_msgs_msg_Header,
-    height=UINT32S,
-    width=UINT32S,
-    distortion_model=STRINGS,
-    d=some(FLOAT64S),
-    k=exactly(9, FLOAT64S),
-    r=exactly(9, FLOAT64S),
-    p=exactly(12, FLOAT64S),
-    binning_x=UINT32S,
-    binning_y=UINT32S,
-    roi=sensor_msgs_msg_RegionOfInterest,
-)
 sensor_msgs_msg_BatteryState = st.builds(
     sensor_msgs.msg.BatteryState,
     header=std_msgs_msg_Header,
@@ -347,6 +328,58 @@ humanoid_interfaces_msg_Stance = st.builds(
     left_sole=geometry_msgs_msg_Pose,
     right_sole=geometry_msgs_msg_Pose,
 )
+std_msgs_msg_ColorRGBA = st.builds(std_msgs.msg.ColorRGBA, r=FLOAT32S, g=FLOAT32S, b=FLOAT32S, a=FLOAT32S)
+builtin_interfaces_msg_Duration = st.builds(builtin_interfaces.msg.Duration, sec=INT32S, nanosec=UINT32S)
+sensor_msgs_msg_CompressedImage = st.builds(
+    sensor_msgs.msg.CompressedImage,
+    header=std_msgs_msg_Header,
+    format=STRINGS,
+    data=some(UINT8S),
+)
+visualization_msgs_msg_UVCoordinate = st.builds(visualization_msgs.msg.UVCoordinate, u=FLOAT32S, v=FLOAT32S)
+visualization_msgs_msg_MeshFile = st.builds(
+    visualization_msgs.msg.MeshFile,
+    filename=STRINGS,
+    data=some(UINT8S),
+)
+visualization_msgs_msg_Marker = st.builds(
+    visualization_msgs.msg.Marker,
+    header=std_msgs_msg_Header,
+    ns=STRINGS,
+    id=INT32S,
+    type=INT32S,
+    action=INT32S,
+    pose=geometry_msgs_msg_Pose,
+    scale=geometry_msgs_msg_Vector3,
+    color=std_msgs_msg_ColorRGBA,
+    lifetime=builtin_interfaces_msg_Duration,
+    frame_locked=BOOLEANS,
+    points=some(geometry_msgs_msg_Point),
+    colors=some(std_msgs_msg_ColorRGBA),
+    texture_resource=STRINGS,
+    texture=sensor_msgs_msg_CompressedImage,
+    uv_coordinates=some(visualization_msgs_msg_UVCoordinate),
+    text=STRINGS,
+    mesh_resource=STRINGS,
+    mesh_file=visualization_msgs_msg_MeshFile,
+    mesh_use_embedded_materials=BOOLEANS,
+)
+visualization_msgs_msg_MarkerArray = st.builds(
+    visualization_msgs.msg.MarkerArray,
+    markers=some(visualization_msgs_msg_Marker, drawn=1),
+)
+humanoid_interfaces_msg_ObstacleTouch = st.builds(
+    humanoid_interfaces.msg.ObstacleTouch,
+    header=std_msgs_msg_Header,
+    obstacle=st.text(CHARACTERS, max_size=64) | st.just("x" * 64),
+    link=st.text(CHARACTERS, max_size=64) | st.just("x" * 64),
+)
+humanoid_interfaces_msg_ObstacleMotion = st.builds(
+    humanoid_interfaces.msg.ObstacleMotion,
+    name=st.text(CHARACTERS, max_size=64) | st.just("x" * 64),
+    position=geometry_msgs_msg_Point,
+)
+std_msgs_msg_Empty = st.builds(std_msgs.msg.Empty)
 std_srvs_srv_Trigger_Request = st.builds(std_srvs.srv.Trigger.Request)
 std_srvs_srv_Trigger_Response = st.builds(std_srvs.srv.Trigger.Response, success=BOOLEANS, message=STRINGS)
 std_srvs_srv_SetBool_Request = st.builds(std_srvs.srv.SetBool.Request, data=BOOLEANS)
@@ -437,22 +470,13 @@ PUBLISHERS = [
         std_msgs_msg_Bool,
     ),
     Topic(
-        "/head_camera/image_raw",
+        "/head_camera/sensor",
         "sensor_msgs/msg/Image",
         sensor_msgs.msg.Image,
         QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE),
-        "publish_head_camera_image_raw",
-        "head_camera_image_raw_publisher",
+        "publish_head_camera_sensor",
+        "head_camera_sensor_publisher",
         sensor_msgs_msg_Image,
-    ),
-    Topic(
-        "/head_camera/camera_info",
-        "sensor_msgs/msg/CameraInfo",
-        sensor_msgs.msg.CameraInfo,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT, durability=DurabilityPolicy.VOLATILE),
-        "publish_head_camera_camera_info",
-        "head_camera_camera_info_publisher",
-        sensor_msgs_msg_CameraInfo,
     ),
     Topic(
         "/battery_state",
@@ -508,6 +532,24 @@ PUBLISHERS = [
         "ground_truth_stance_publisher",
         humanoid_interfaces_msg_Stance,
     ),
+    Topic(
+        "~/obstacles",
+        "visualization_msgs/msg/MarkerArray",
+        visualization_msgs.msg.MarkerArray,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        "publish_obstacles",
+        "obstacles_publisher",
+        visualization_msgs_msg_MarkerArray,
+    ),
+    Topic(
+        "~/touches",
+        "humanoid_interfaces/msg/ObstacleTouch",
+        humanoid_interfaces.msg.ObstacleTouch,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "publish_touches",
+        "touches_publisher",
+        humanoid_interfaces_msg_ObstacleTouch,
+    ),
 ]
 SUBSCRIPTIONS = [
     Topic(
@@ -527,6 +569,24 @@ SUBSCRIPTIONS = [
         "on_push",
         "push_subscription",
         geometry_msgs_msg_WrenchStamped,
+    ),
+    Topic(
+        "~/move_obstacle",
+        "humanoid_interfaces/msg/ObstacleMotion",
+        humanoid_interfaces.msg.ObstacleMotion,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "on_move_obstacle",
+        "move_obstacle_subscription",
+        humanoid_interfaces_msg_ObstacleMotion,
+    ),
+    Topic(
+        "/head_camera/trigger",
+        "std_msgs/msg/Empty",
+        std_msgs.msg.Empty,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE),
+        "on_head_camera_trigger",
+        "head_camera_trigger_subscription",
+        std_msgs_msg_Empty,
     ),
 ]
 # fmt: on
@@ -709,8 +769,8 @@ PARAMETERS = [
     ParameterCase(
         "clock_period",
         Parameter.Type.DOUBLE,
-        0.004,
-        [0.004, 0.001, 0.1, 0.0505, 0.002, 0.098],
+        0.02,
+        [0.02, 0.001, 0.1, 0.0505, 0.002, 0.098],
         [0.0, 0.102],
         description="Simulated time between two messages on /clock [s]; each message costs every node on that time a callback",
         read_only=True,
@@ -780,13 +840,70 @@ PARAMETERS = [
         read_only=True,
     ),
     ParameterCase(
-        "camera.rate",
+        "camera.width",
+        Parameter.Type.INTEGER,
+        160,
+        [160, 16, 1920, 17, 1919],
+        [15, 1921],
+        description="Width of the pictures of the camera's sensor [px]",
+        read_only=True,
+        range=(16, 1920),
+    ),
+    ParameterCase(
+        "camera.height",
+        Parameter.Type.INTEGER,
+        120,
+        [120, 16, 1080, 17, 1079],
+        [15, 1081],
+        description="Height of the pictures of the camera's sensor [px]",
+        read_only=True,
+        range=(16, 1080),
+    ),
+    ParameterCase(
+        "camera.loss",
         Parameter.Type.DOUBLE,
-        5.0,
-        [5.0, 0.1, 30.0, 15.05, 0.102, 29.4],
-        [0.098, 30.6],
-        description="Images per second of simulated time, while anybody subscribes to them [Hz]",
-        range=(0.1, 30.0),
+        0.0,
+        [0.0, 1.0, 0.5, 0.001, 0.98],
+        [-0.001, 1.02],
+        description="Share of the pictures that get lost on the way from the sensor, at random",
+        range=(0.0, 1.0),
+    ),
+    ParameterCase(
+        "obstacles",
+        Parameter.Type.STRING_ARRAY,
+        [],
+        [[], ["a"], ["b"], ["c"], ["d"], ["a", "b"]],
+        [],
+        description="Solid obstacles: `NAME X Y [WIDTH [HEIGHT]]` [m] in odom; a name begins with a colour and box or cylinder, such as `red_box 1.2 0.3`",
+        read_only=True,
+    ),
+    ParameterCase(
+        "random_obstacles.count",
+        Parameter.Type.INTEGER,
+        0,
+        [0, 50, 1, 49, 2, 3],
+        [-1, 51],
+        description="How many more obstacles are put at random places, which depend on the seed",
+        read_only=True,
+        range=(0, 50),
+    ),
+    ParameterCase(
+        "random_obstacles.area",
+        Parameter.Type.DOUBLE_ARRAY,
+        [0.6, -1.2, 3.4, 1.2],
+        [[0.6, -1.2, 3.4, 1.2], [0.6, 0.6, 0.6, 0.6], [0.6, -1.2, 3.4, 0.6], [0.6, -1.2, 3.4, -1.2], [0.6, -1.2, 3.4, 3.4], [0.6, -1.2, 3.4, 1.0]],
+        [[0.6, -1.2, 3.4], [0.6, -1.2, 3.4, 1.2, 1.0]],
+        description="Where they are put, x and y from, x and y to [m] in odom",
+        read_only=True,
+    ),
+    ParameterCase(
+        "random_obstacles.free",
+        Parameter.Type.DOUBLE_ARRAY,
+        [0.0, 0.0, 4.0, 0.0],
+        [[0.0, 0.0, 4.0, 0.0], [0.0, 4.0, 1.0, 0.98], [0.0, 0.0, 0.0, 0.0], [0.0, 4.0, 1.0, 0.0], [0.0, 4.0, 1.0, 4.0], [0.0, 4.0, 1.0, 1.0]],
+        [],
+        description="Places that they leave free, x and y of one after the other [m] in odom",
+        read_only=True,
     ),
     ParameterCase(
         "ground_truth",

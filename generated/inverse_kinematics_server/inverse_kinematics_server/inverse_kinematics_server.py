@@ -14,6 +14,7 @@ from humanoid.kinematics.head import HeadPose
 from humanoid.kinematics.ik import IkRequest, IkResult, IkStatus, InverseKinematics
 from humanoid.robot.external import load_model
 from humanoid.ros import messages
+from humanoid.ros.recent import LatestJoints
 from humanoid.ros.running import run
 from humanoid.spatial import Array
 from humanoid_interfaces.srv import CheckHeadPose, SolveIK
@@ -34,14 +35,11 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
         self._solver = InverseKinematics(humanoid)
         self._head = HeadPose(humanoid)
         self._legs = RobotState(humanoid)
-        self._joints: data.JointStates | None = None
+        self._joints = LatestJoints(self)
 
     def on_joint_states(self, message: JointState) -> None:
         """Take the joint positions, for requests without a seed."""
-        try:
-            self._joints = messages.read_joint_states(message)
-        except ValueError as error:
-            self.get_logger().warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
+        self._joints.put(message)
 
     def handle_solve_ik(self, request: SolveIK.Request, response: SolveIK.Response) -> SolveIK.Response:
         """Search for the angles of a chain."""
@@ -100,7 +98,7 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
                 timeout=messages.nanoseconds(request.timeout) / data.SECOND or values.timeout,
                 random_seed=request.random_seed,
             ),
-            None if self._joints is None else self._joints.position,
+            None if (present := self._joints.get()) is None else present.position,
         )
 
     def _in_base(self, target: PoseStamped) -> tuple[Array, Array]:
@@ -112,9 +110,10 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
             return position, orientation
         if frame != _FOOTPRINT:
             raise ValueError(f"the target is in '{frame}'; I think in {_BASE} and {_FOOTPRINT}")
-        if self._joints is None:
+        present = self._joints.get()
+        if present is None:
             raise ValueError(f"nobody has reported joint states: without them, {_FOOTPRINT} is unknown")
-        self._legs.set_posture(np.zeros(3), IDENTITY, self._joints.position)
+        self._legs.set_posture(np.zeros(3), IDENTITY, present.position)
         return from_footprint([self._legs.sole(side) for side in (0, 1)], position, orientation)
 
 

@@ -42,6 +42,17 @@ class NavigationActionServerParameters:
 
     Must be from 0.1 to 0.5. Can be set at start only.
     """
+    model_file: str
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its
+    legs allow
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     second_goal: str
     """Whether a goal that arrives during a walk takes over (preempt) or is rejected (reject)
 
@@ -94,6 +105,8 @@ def read_parameters(node: Node) -> NavigationActionServerParameters:
         values[name] = _converted(name, default if value is None else value)
     return NavigationActionServerParameters(
         walking_speed=values["walking_speed"],
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         second_goal=values["second_goal"],
         replan_distance=values["replan_distance"],
         tolerance=ToleranceParameters(
@@ -144,6 +157,24 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
                 read_only=True,
                 additional_constraints="must be from 0.1 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.5)],
+            ),
+        ),
+        (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its legs allow",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+                read_only=True,
             ),
         ),
         (

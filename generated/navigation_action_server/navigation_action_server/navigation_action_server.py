@@ -6,8 +6,9 @@ from typing import Any
 
 from humanoid import data
 from humanoid.control.pace import Pace
-from humanoid.planning.footsteps import PlanStatus, StepLimits, shorter
+from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, shorter
 from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
+from humanoid.robot.body import load_body
 from humanoid.robot.scene import GROUND
 from humanoid.ros import messages
 from humanoid.ros.news import News
@@ -33,6 +34,8 @@ class NavigationActionServer(NavigationActionServerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
+        body = load_body(self.parameters.model_file, self.parameters.joint_map)
+        self._limits = fitted(StepLimits().at_pace(Pace(self.parameters.walking_speed)), body)
         self._gait: data.GaitState | None = None
         self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)
@@ -89,12 +92,11 @@ class NavigationActionServer(NavigationActionServerBase):
             self._end(before, result)
         x, y, yaw = (float(part) for part in messages.planar(goal.target.pose))
         values = self.parameters
-        limits = StepLimits().at_pace(Pace(values.walking_speed))
         navigation = Navigation(
             (x, y, yaw),
             self._gait,
             self._plan,
-            limits=shorter(limits, goal.max_step_length),
+            limits=shorter(self._limits, goal.max_step_length),
             ground=GROUND,
             tolerance=GoalTolerance(
                 goal.position_tolerance or values.tolerance.position,

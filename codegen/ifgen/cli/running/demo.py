@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from importlib import import_module
 from importlib.util import find_spec
@@ -19,6 +18,7 @@ from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.running.activation import ActivationError, put_on_path
 
 _PICTURES = (".gif", ".png")
+_GREATEST = 2**63 - 1  # integer of a parameter
 
 
 def _complete(context: click.Context, parameter: click.Parameter, start: str) -> list[str]:
@@ -67,13 +67,22 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
     help="Port of the page; 0: any free one.",
 )
 @click.option(
+    "--host",
+    metavar="ADDRESS",
+    help="Address of the page for other machines, such as 0.0.0.0; its URL then has a token.",
+)
+@click.option(
     "--realtime",
     is_flag=True,
     help="No faster than real time, as with a window or page; on real rclpy also not in lockstep.",
 )
 @click.option("--camera", is_flag=True, help="Let the robot also look for faces, which takes time.")
 @click.option(
-    "--seed", type=click.IntRange(0), default=0, show_default=True, help="Seed of the sensors' noise."
+    "--seed",
+    type=click.IntRange(0, _GREATEST),
+    default=0,
+    show_default=True,
+    help="Seed of the sensors' noise.",
 )
 @click.option("--model", metavar="FILE", type=EXISTING_FILE, help="Your own humanoid, as MJCF.")
 @click.option(
@@ -89,6 +98,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     record: Path | None,
     web: bool,
     port: int,
+    host: str | None,
     realtime: bool,
     camera: bool,
     seed: int,
@@ -104,6 +114,9 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     if problem := _problem(context, record):
         raise click.UsageError(problem, context)
     _prepare(transport)
+    # MuJoCo and the nodes take a second or two to import: nobody should wonder meanwhile.
+    click.echo(f"waking up the humanoid: {'idle' if idle else f'scenario {scenario}'}, seed {seed}")
+    sys.stdout.flush()
     # Found by name: the toolkit does not depend on its examples.
     humanoid = import_module("humanoid.show.demo")
     options = humanoid.Options(
@@ -114,6 +127,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
         transport=transport,
         record=record,
         web=port if web else None,
+        host=host or "",
         window=not headless and not web,
         realtime=realtime,
         seed=seed,
@@ -133,7 +147,7 @@ def _problem(context: click.Context, record: Path | None) -> str:
     for one, other in (("headless", "web"), ("idle", "scenario")):
         if {one, other} <= given:
             return f"--{one} cannot be used with --{other}"
-    for option, needs in (("port", "web"), ("joint_map", "model")):
+    for option, needs in (("port", "web"), ("host", "web"), ("joint_map", "model")):
         if option in given and needs not in given:
             return f"--{option.replace('_', '-')} needs --{needs}"
     if record is None:
@@ -143,8 +157,6 @@ def _problem(context: click.Context, record: Path | None) -> str:
     # A scenario takes a minute: what cannot be written should be said before.
     if not record.parent.is_dir():
         return f"--record: there is no folder {record.parent}"
-    if not os.access(record if record.exists() else record.parent, os.W_OK):
-        return f"--record: {record} cannot be written"
     return ""
 
 

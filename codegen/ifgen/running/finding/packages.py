@@ -135,6 +135,10 @@ def _roots(near: Iterable[Path]) -> list[Path]:
 def _source(name: str, folder: Path) -> Package | None:
     if _name_in(folder) != name or is_node_package(folder):
         return None
+    # The shared files of an installation: its executables are elsewhere.
+    installed = _installed(name, folder.parent.parent) if folder.parent.name == "share" else None
+    if installed is not None:
+        return installed
     scripts = _scripts_in_setup_py(folder / "setup.py") | _scripts_in_tables(folder)
     found = {script: _entry(script, target, folder) for script, target in scripts.items()}
     return Package(name, folder.resolve(), found)
@@ -166,11 +170,16 @@ def _entry(script: str, target: str, folder: Path | None) -> Executable:
 
 def _indexed(name: str) -> Iterator[Package | None]:
     for prefix in _prefixes():
-        if (prefix / _INDEX / name).is_file():
-            folder = prefix / "lib" / name
-            files = sorted(folder.iterdir()) if folder.is_dir() else []
-            found = {f.name: _program(f) for f in files if f.is_file() and os.access(f, os.X_OK)}
-            yield Package(name, prefix / "share" / name, found, prefix)
+        yield _installed(name, prefix)
+
+
+def _installed(name: str, prefix: Path) -> Package | None:
+    if not (prefix / _INDEX / name).is_file():
+        return None
+    folder = prefix / "lib" / name
+    files = sorted(folder.iterdir()) if folder.is_dir() else []
+    found = {f.name: _program(f) for f in files if f.is_file() and os.access(f, os.X_OK)}
+    return Package(name, prefix / "share" / name, found, prefix)
 
 
 def _program(file: Path) -> Executable:

@@ -24,21 +24,22 @@ from ..data import (
     Support,
 )
 from ..kinematics.dynamics import RobotState, natural_frequency, world_velocity
-from ..kinematics.leg_ik import solve_leg
+from ..kinematics.legs import Legs
 from ..robot.model import PERIOD, HumanoidModel
 from ..robot.table import JOINT_NAMES, LEGS, UPPER_BODY
 from ..spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
 from . import balance
+from .fitting import fitted
 from .inputs import LATE, LEASE, Inputs, Leases
-from .posture import ankle_of, relaxed, standing
+from .posture import level, relaxed, standing
 from .reference import GaitParameters, Sample
 from .stepping import Stepping
 
-_FALLEN_HEIGHT = 0.45  # of base_link, metres
+_FALLEN_HEIGHT = 0.68  # of base_link, as a share of the legs' length
 _RECOVERY = 1_000_000_000  # ns without a fault until the robot takes commands again
 _ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow the requested posture
 _SQUAT_SPEED = 0.15  # m/s
-_DEEPEST = 0.15  # m that the pelvis can be lowered
+_DEEPEST = 0.15  # m that the pelvis of our robot can be lowered
 _SLACK = 1e-3  # rad that a posture may be out of a joint's range
 _MADE_UP = 5  # missed ticks in a row that the reference catches up with
 # rad/s that a joint's set-point moves at most. Ordinary walks stay below it. A foot that lands away from
@@ -60,12 +61,13 @@ class WholeBodyController:
     ) -> None:
         """Stand; `period`, and `input_timeout`, the age at which a reading counts as missing, are in ns."""
         self.model = model
-        self.parameters = parameters or GaitParameters()
+        self.parameters = fitted(parameters or GaitParameters(), model)
         self._period = period * 1e-9
         self._omega = natural_frequency(self.parameters.com_height)
         self.stepping = Stepping(self.parameters, self._omega, self._period, model.sole)
         self.inputs = Inputs(model, input_timeout)
         self._leases = Leases()
+        self._legs = Legs(model)
         self._state = RobotState(model)
         self._planned = RobotState(
             model
@@ -75,6 +77,8 @@ class WholeBodyController:
         self._command = self._joints.copy()
         self._asked: Posture | None = None
         self._squat = 0.0
+        self._deepest = _DEEPEST * model.body.scale
+        self._fallen_height = _FALLEN_HEIGHT * model.body.leg_length
         self._started = False
         self._reason = ""
         self._fault: int | None = None  # when the fault that the robot holds for was last present
@@ -185,8 +189,8 @@ class WholeBodyController:
         if beyond[worst] > _SLACK:
             name, there = JOINT_NAMES[UPPER_BODY][worst], wanted.position[worst]
             return f"{name} cannot be at {there:.2f} rad: {lower[worst]:.2f} to {upper[worst]:.2f}"
-        if not 0.0 <= wanted.squat <= _DEEPEST:
-            return f"the pelvis can be lowered by 0 to {_DEEPEST:g} m, not by {wanted.squat:.2f}"
+        if not 0.0 <= wanted.squat <= self._deepest:
+            return f"the pelvis can be lowered by 0 to {self._deepest:.2g} m, not by {wanted.squat:.2f}"
         return ""
 
     def _look_for_faults(self, now: int) -> None:
@@ -229,7 +233,7 @@ class WholeBodyController:
             floor = min(state.sole(side)[0][2] for side in (0, 1))
             self._squat = self.parameters.com_height - float(state.com[2] - floor)
         lowest = min(state.sole(side)[0][2] for side in (0, 1))
-        self._fallen = self._fallen or odometry.position[2] - lowest < _FALLEN_HEIGHT
+        self._fallen = self._fallen or odometry.position[2] - lowest < self._fallen_height
 
     def _balance(self) -> Array:
         """One tick of walking or standing: set-points (29,)."""
@@ -274,8 +278,8 @@ class WholeBodyController:
         for side, (foot, lifted) in enumerate(targets):
             swinging = sample.swing is not None and sample.swing.leg.side == side
             base = self._towards_measured(pelvis, min(1.0, _BLEND * sample.phase)) if swinging else pelvis
-            ankle = ankle_of(self.model, foot, lifted)
-            joints[LEGS[side]] = solve_leg(self.model.leg, 1 - 2 * side, base, ankle)[0]
+            leg = LEGS[side]
+            joints[leg] = self._legs.solve(side, base, level(foot, lifted), self._joints[leg])
         return joints
 
     def _upper_body(self) -> Array:

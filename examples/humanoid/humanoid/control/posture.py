@@ -7,10 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..kinematics.dynamics import RobotState
-from ..kinematics.leg_ik import solve_leg
+from ..kinematics.legs import Legs
 from ..robot.model import HumanoidModel
 from ..robot.table import ARM_JOINTS, ARMS, LEGS, UPPER_BODY
 from ..spatial import Array, quaternion_of, rotation_z
+from .fitting import fitted
 from .reference import GaitParameters, middle
 
 _RELAXED = {"shoulder_pitch": 0.15, "shoulder_roll": 0.12, "elbow": -0.55}  # of the left arm
@@ -26,9 +27,16 @@ def relaxed() -> Array:
     return joints[UPPER_BODY]
 
 
-def ankle_of(model: HumanoidModel, foot: Array, height: float = 0.0) -> tuple[Array, Array]:
-    """Position and rotation of the ankle above a level sole: a planar pose, and a height above the floor."""
-    return np.array([foot[0], foot[1], height + model.leg.ankle_height]), rotation_z(foot[2])
+def level(foot: Array, height: float = 0.0) -> tuple[Array, Array]:
+    """Position and rotation of a level sole: a planar pose, and a height above the floor."""
+    return np.array([foot[0], foot[1], height]), rotation_z(foot[2])
+
+
+def start(model: HumanoidModel) -> tuple[Array, Array]:
+    """Joint positions (29,) and base_link's position (3,) of a robot that stands at the origin."""
+    parameters = fitted(GaitParameters(), model)
+    feet = [np.array([0.0, side * parameters.stance_width / 2, 0.0]) for side in (1, -1)]
+    return standing(model, feet, parameters)
 
 
 def standing(
@@ -37,7 +45,7 @@ def standing(
     """Joint positions (29,) and base_link's position (3,) of a robot upright on both feet (planar poses)."""
     joints = np.zeros(29)
     joints[UPPER_BODY] = relaxed() if upper_body is None else upper_body
-    state = RobotState(model)
+    state, legs = RobotState(model), Legs(model)
     centre = middle(feet, parameters)
     rotation = rotation_z((feet[0][2] + feet[1][2]) / 2)
     com = np.array([centre[0], centre[1], parameters.com_height])
@@ -48,6 +56,5 @@ def standing(
         state.set_posture(np.zeros(3), quaternion_of(rotation), joints)
         base = com - state.com
         for side, leg in enumerate(LEGS):
-            ankle = ankle_of(model, feet[side])
-            joints[leg] = solve_leg(model.leg, 1 - 2 * side, (base, rotation), ankle)[0]
+            joints[leg] = legs.solve(side, (base, rotation), level(feet[side]), joints[leg])
     return joints, base

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..data import STEP_TIME, Footstep, Leg
+from ..robot.table import STANCE_WIDTH
 from ..spatial import Array, from_frame
 from .pace import Pace
 
@@ -25,12 +26,14 @@ PREVIEW = 4  # steps that the reference looks ahead: later ones weigh exp(-w t) 
 class GaitParameters:
     """Parameters of a walk. Times in seconds, lengths in metres; gains have no unit unless one is named.
 
-    The first three follow from the speed: see `at_pace`.
+    The first three follow from the speed: see `at_pace`. Lengths are those of our robot; `fitting.fitted` makes
+    them those of another.
     """
 
     com_height: float = Pace().com_height
     double_support: float = Pace().double_support
     reach: float = Pace().reach  # between the soles, of a step that can be taken
+    stance_width: float = STANCE_WIDTH
     first_double_support: float = 1.2  # from standing
     settle: float = 0.5  # from the last step until the robot counts as standing
     lift: float = 0.05

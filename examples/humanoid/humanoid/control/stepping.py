@@ -10,7 +10,6 @@ import numpy as np
 
 from ..data import Footstep, FootstepPlan, Leg, Stance, Support
 from ..robot.model import SoleGeometry
-from ..robot.table import STANCE_WIDTH
 from ..spatial import Array, from_frame, to_frame, wrap
 from . import swing
 from .balance import limits
@@ -45,7 +44,8 @@ class Stepping:
         self._hurried = False  # the present swing
         self._landed = False  # the walk was broken off
         self.adjusted = 0  # landings that were moved to keep balance
-        self.stand([np.array([0.0, side, 0.0]) for side in (0.09, -0.09)])
+        half = parameters.stance_width / 2
+        self.stand([np.array([0.0, side, 0.0]) for side in (half, -half)])
 
     def stand(self, feet: Sequence[Array]) -> None:
         """Start again, standing on both feet (planar poses)."""
@@ -214,7 +214,7 @@ class Stepping:
         """Take two unplanned steps: this leg first, then the other one beside it."""
         x, y, yaw = (float(part) for part in self.feet[leg.side])
         self.steps = [Footstep(self.index, leg, x, y, yaw)]
-        x, y = from_frame(self.feet[leg.side], np.array([0.0, -leg.sign * STANCE_WIDTH]))
+        x, y = from_frame(self.feet[leg.side], np.array([0.0, -leg.sign * self._parameters.stance_width]))
         self.steps.append(Footstep(self.index + 1, leg.other, float(x), float(y), yaw))
         self._rebuild(_BRIEF)
 

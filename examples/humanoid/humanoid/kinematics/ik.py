@@ -156,8 +156,8 @@ class _Search:
 
 
 def _leg_solution(model: HumanoidModel, chain: str, target: tuple[Array, Array]) -> Array | None:
-    """The closed-form solution of a leg; joint limits are not checked."""
-    if not chain.endswith("_leg"):
+    """The solution of a leg like ours in closed form; joint limits are not checked."""
+    if not (chain.endswith("_leg") and model.has_our_legs):
         return None
     position, rotation = target
     ankle = (position + rotation @ np.array([0.0, 0.0, model.leg.ankle_height]), rotation)

@@ -10,14 +10,14 @@ from enum import IntEnum
 import numpy as np
 
 from ..data import SECOND, Footstep, FootstepPlan, GaitState, JointStates, Leg, Mode, Posture, Support
+from ..robot.body import OURS, Body
 from ..robot.table import UPPER_BODY
 from ..spatial import Array
 from .choreography import DANCES, Beat, blend, standing_posture
-from .footsteps import StepLimits, advance, footstep
+from .footsteps import StepLimits, advance, fitted, footstep
 
 TEMPO = (30.0, 140.0)  # beats per minute that the arms can follow
 _PREPARE = 1.5  # seconds from standing to the first beat's pose, and back at the end
-_LIMITS = StepLimits(turn=0.30, trailing_turn=0.15)
 _BROKEN = {Mode.HOLDING, Mode.FALLEN, Mode.EMERGENCY_STOP}
 
 
@@ -74,8 +74,9 @@ def problem(dance: str, tempo: float, known: Collection[str] = DANCES.keys()) ->
 class Dance:
     """A dance under way. The caller must reject goals for which `problem` finds a reason."""
 
-    def __init__(self, dance: str, tempo: float, beats: int, stamp: int) -> None:
+    def __init__(self, dance: str, tempo: float, beats: int, stamp: int, body: Body = OURS) -> None:
         choreography = DANCES[dance]
+        self._limits = fitted(StepLimits(turn=0.30, trailing_turn=0.15), body)
         self._beats = choreography.beats
         self._count = beats or len(self._beats)
         self._period = 60.0 / (tempo or choreography.tempo)
@@ -150,10 +151,10 @@ class Dance:
         """The steps for motions of the body from where it stands; the last one joins the feet."""
         base, leg, steps = gait.stance.centre, Leg.RIGHT, list[Footstep]()
         for motion in motions:
-            base = advance(base, leg, motion, _LIMITS)
-            steps.append(footstep(gait.footstep_index + len(steps), leg, base, _LIMITS))
+            base = advance(base, leg, motion, self._limits)
+            steps.append(footstep(gait.footstep_index + len(steps), leg, base, self._limits))
             leg = leg.other
-        steps.append(footstep(gait.footstep_index + len(steps), leg, base, _LIMITS))
+        steps.append(footstep(gait.footstep_index + len(steps), leg, base, self._limits))
         self._last_index = steps[-1].index
         return FootstepPlan(0, tuple(steps), (float(base[0]), float(base[1]), float(base[2])))
 

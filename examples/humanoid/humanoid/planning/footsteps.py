@@ -15,6 +15,7 @@ import numpy as np
 
 from ..control.pace import SHORTEST_TIME, Pace
 from ..data import Footstep, FootstepPlan, Leg, Stance
+from ..robot.body import OURS, Body
 from ..robot.ground import Ground
 from ..robot.table import STANCE_WIDTH
 from ..spatial import Array, from_frame, to_frame, wrap
@@ -54,6 +55,19 @@ class StepLimits:
 def shorter(limits: StepLimits, length: float) -> StepLimits:
     """The limits with forward steps of at most `length` [m]; 0 leaves them as they are."""
     return replace(limits, forward=min(limits.forward, length)) if length else limits
+
+
+def fitted(limits: StepLimits, body: Body) -> StepLimits:
+    """The limits that are as large for the legs of another body as these are for ours."""
+    scale = body.scale
+    return replace(
+        limits,
+        forward=limits.forward * scale,
+        backward=limits.backward * scale,
+        sideways=limits.sideways * scale,
+        near=limits.near * scale,
+        width=limits.width * body.stance_width / OURS.stance_width,
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,6 +51,10 @@ class TaskManager:
         """Add a task after those that already wait."""
         self._waiting.append(task)
 
+    def forget(self) -> None:
+        """Drop the tasks that wait."""
+        self._waiting.clear()
+
     def finished(self, success: bool, message: str) -> bool:
         """Note that the present task has ended; returns whether it is tried again, as often as it says."""
         task = self._present

@@ -11,15 +11,14 @@ The map is YAML:
       l_sole: left_sole
       r_sole: {body: right_foot, xyz: [0, 0, -0.06], rpy: [0, 0, 0]}
 
-Servos, sensors and missing frames are added. The legs must be built like ours: axes that meet in hip and
-ankle, straight down at zero. Otherwise their inverse kinematics has no closed form.
+Servos, sensors and missing frames are added.
 """
 
 from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,6 +31,7 @@ from ..spatial import quaternion_of, rotation_rpy
 from . import table
 from .joint_map import Frame, JointMap, ModelError, read_map
 from .model import GRAVITY, PERIOD, SOLE, HumanoidModel, Names, describe, load
+from .obstacles import Solid, add_solids
 
 _ALIGNED = 1e-3  # tolerance of the axes: metres, and sine of the angle
 _GRAVITY_OFF = 0.2  # m/s2: it varies by less than this from place to place on earth
@@ -40,19 +40,20 @@ _LINK = {frame.name: frame for frame in table.FRAMES}
 _JOINT = {link.name: link.joint.name for link in table.LINKS if link.joint is not None}
 
 
-def load_model(model_file: str = "", joint_map: str = "") -> HumanoidModel:
+def load_model(model_file: str = "", joint_map: str = "", solids: Sequence[Solid] = ()) -> HumanoidModel:
     """Load our own robot, or the one that the parameters name by file and map. Raises ModelError."""
     if not model_file:
-        return load()
-    return load_external(Path(model_file), Path(joint_map) if joint_map else None)
+        return load(solids=solids)
+    return load_external(Path(model_file), Path(joint_map) if joint_map else None, solids)
 
 
-def load_external(path: Path, joint_map: Path | None = None) -> HumanoidModel:
+def load_external(path: Path, joint_map: Path | None = None, solids: Sequence[Solid] = ()) -> HumanoidModel:
     """Compile somebody else's model. Raises ModelError, which names the element that is wrong."""
     names = read_map(joint_map) if joint_map is not None else JointMap()
     spec = _parse(path)
     try:
         _Adapter(path, spec, names).adapt()
+        add_solids(spec, solids)
         mj = spec.compile()
     except ValueError as error:
         raise ModelError(f"{path}: {_sentence(error)}") from error
@@ -239,7 +240,7 @@ def _check(path: Path, mj: mujoco.MjModel, names: JointMap, joints: dict[str, st
 
 
 def _check_legs(path: Path, model: HumanoidModel, joints: dict[str, str]) -> None:
-    """Check that legs and trunk turn about the axes of the table, and that the closed form fits the legs."""
+    """Check that legs and trunk turn about the axes of the table."""
     data = model.data()
     data.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)
     data.qpos[model.qpos] = 0.0
@@ -252,17 +253,3 @@ def _check_legs(path: Path, model: HumanoidModel, joints: dict[str, str]) -> Non
                 f"{path}: joint '{joints[joint.name]}' turns about ({text}) with all joints at zero; "
                 f"'{joint.name}' turns about ({', '.join(f'{part:g}' for part in joint.axis)})"
             )
-    for leg in table.LEGS:
-        anchors = data.xanchor[model.joints[leg]]
-        below = np.array([0.0, 0.0, 1.0])
-        expected = {1: anchors[0], 2: anchors[0], 5: anchors[4]}
-        expected[3] = anchors[0] - model.leg.thigh * below
-        expected[4] = anchors[3] - model.leg.shin * below
-        for number, place in expected.items():
-            if np.abs(anchors[number] - place).max() > _ALIGNED:
-                name = table.JOINT_NAMES[leg][number]
-                off = float(np.linalg.norm(anchors[number] - place))
-                raise ModelError(
-                    f"{path}: joint '{joints[name]}' for '{name}' is {off * 1e3:.0f} mm off: the axes of a "
-                    "hip and of an ankle must meet, and the leg hang straight down with all joints at zero"
-                )

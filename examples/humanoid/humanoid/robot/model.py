@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import mujoco
 import numpy as np
@@ -12,7 +12,10 @@ from numpy.typing import NDArray
 
 from ..spatial import Array
 from . import table
+from .body import OURS, Body
+from .measuring import measure
 from .mjcf import TIMESTEP, write_mjcf
+from .obstacles import Solid, add_solids
 
 Indices = NDArray[np.intp]
 GRAVITY = 9.81
@@ -69,7 +72,10 @@ class HumanoidModel:
     frames: dict[str, int]  # site ids
     sensors: dict[str, slice]  # places in sensordata
     leg: LegGeometry
+    has_our_legs: bool  # so that `leg` says all, and their inverse kinematics has a closed form
     sole: SoleGeometry
+    body: Body
+    straight_height: float  # of the centre of mass above the soles, with straight legs [m]
     mass: float
 
     def data(self) -> mujoco.MjData:
@@ -81,10 +87,13 @@ class HumanoidModel:
 mujoco.set_mju_user_warning(logging.getLogger("mujoco").warning)
 
 
-def load(timestep: float = TIMESTEP) -> HumanoidModel:
-    """Compile the robot of the table in its scene."""
-    mj = mujoco.MjModel.from_xml_string(write_mjcf(timestep))
-    return describe(mj, Names({name: name for name in table.JOINT_NAMES}, "base_link", "torso"), SOLE)
+def load(timestep: float = TIMESTEP, solids: Sequence[Solid] = ()) -> HumanoidModel:
+    """Compile the robot of the table in its scene, with obstacles."""
+    spec = mujoco.MjSpec.from_string(write_mjcf(timestep))
+    add_solids(spec, solids)
+    mj = spec.compile()
+    names = Names({name: name for name in table.JOINT_NAMES}, "base_link", "torso")
+    return replace(describe(mj, names, SOLE), body=OURS)
 
 
 def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidModel:
@@ -96,6 +105,8 @@ def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidMo
     actuators = np.array([mj.actuator(name).id for name in table.JOINT_NAMES])
     base = mj.body(names.base).id
     frames = (*(frame.name for frame in table.FRAMES), "l_ankle", "r_ankle")
+    lower, upper = mj.jnt_range[joints].T.copy()
+    measures = measure(mj, joints[:12], base)
     return HumanoidModel(
         mj=mj,
         base=base,
@@ -104,15 +115,25 @@ def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidMo
         qpos=mj.jnt_qposadr[joints].astype(np.intp),
         dof=mj.jnt_dofadr[joints].astype(np.intp),
         actuators=actuators,
-        lower=mj.jnt_range[joints, 0].copy(),
-        upper=mj.jnt_range[joints, 1].copy(),
+        lower=lower,
+        upper=upper,
         effort=mj.actuator_forcerange[actuators, 1].copy(),
         kp=mj.actuator_gainprm[actuators, 0].copy(),
         kv=-mj.actuator_biasprm[actuators, 2],
         frames={name: mj.site(name).id for name in frames},
         sensors=_sensors(mj),
         leg=_leg(mj, joints[:6]),
+        has_our_legs=measures.has_our_legs,
         sole=sole,
+        body=Body(
+            table.JOINT_NAMES,
+            lower,
+            upper,
+            min(measures.leg_lengths),
+            sum(measures.outwards),
+            (2 * sole.half_length, 2 * sole.half_width),
+        ),
+        straight_height=measures.straight_height,
         mass=float(mj.body_subtreemass[base]),
     )
 

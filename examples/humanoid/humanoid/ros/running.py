@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sys
+import time
 from collections.abc import Callable, Iterator
 
 import rclpy
@@ -11,6 +12,8 @@ from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
 from ..robot.joint_map import ModelError
+
+_NOTING = 0.2  # s that rclpy has to note a signal
 
 
 def run(make: Callable[[], Node], args: list[str] | None, refusal: type[Exception]) -> None:
@@ -38,6 +41,15 @@ def until_shutdown() -> Iterator[None]:
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     except Exception:
-        # Publishing or taking a message fails in many ways when the context is shut down meanwhile.
-        if rclpy.ok():
+        # Publishing or taking a message fails in many ways when the context is shut down meanwhile. A signal
+        # makes it fail even before rclpy has noted that signal, in a thread of its own.
+        if not _ends_soon():
             raise
+
+
+def _ends_soon() -> bool:
+    """Wait a little for a shutdown that is under way, and return whether it came."""
+    end = time.monotonic() + _NOTING
+    while rclpy.ok() and time.monotonic() < end:
+        time.sleep(0.01)
+    return not rclpy.ok()

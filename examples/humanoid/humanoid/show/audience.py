@@ -1,15 +1,16 @@
-"""A node that plays the people around the robot: they push it, speak, press its button, hold a joystick."""
+"""A node that plays the people around the robot: they push it, speak, hold a joystick, move things."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import rclpy
-from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
-from humanoid_interfaces.msg import TaskStatus
+from geometry_msgs.msg import Point, Vector3, Wrench, WrenchStamped
+from humanoid_interfaces.msg import ObstacleMotion, TaskStatus
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Joy
@@ -53,6 +54,7 @@ class Audience(Node):
             raise AudienceError(str(error)) from None
         self._due = 0  # events whose time is set, but has not come
         self._push = self.create_publisher(WrenchStamped, "/humanoid_simulator/push", 10)
+        self._move = self.create_publisher(ObstacleMotion, "/humanoid_simulator/move_obstacle", 10)
         self._speech = self.create_publisher(String, "/speech/text", 10)
         self._joy = self.create_publisher(Joy, "/joy", _NEWEST)
         self._button = self.create_client(SetBool, "/emergency_stop/set")
@@ -63,6 +65,12 @@ class Audience(Node):
     def is_over(self) -> bool:
         """Whether everything has happened."""
         return not self._waiting and not self._due
+
+    def play(self, texts: list[str], after: int) -> None:
+        """Play other events instead: times count from now, tasks from the one after number `after`."""
+        events = [event_of(text) for text in texts]
+        self._waiting = [replace(e, task=e.task + after) if e.task else e for e in events]
+        self._plan(lambda event: not event.task)
 
     def _on_task(self, message: TaskStatus) -> None:
         number, state = message.number, message.state
@@ -99,7 +107,8 @@ class Audience(Node):
             case "joystick":
                 self._steer(*event.numbers)
             case "move":
-                self.get_logger().warning("nothing can be moved here")
+                x, y = event.numbers
+                self._move.publish(ObstacleMotion(name=event.words, position=Point(x=x, y=y)))
 
     def _steer(self, forward: float, left: float, turn: float, seconds: float) -> None:
         """Hold the sticks for a time, and let go."""

@@ -54,8 +54,27 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "teleop",
         "face_detection",
     ),
+    "sight": ("camera_driver",),
 }
 """Nodes by process; each is in the package of its name."""
+
+MANAGED = ("camera_driver", "joint_controller")
+"""Nodes with a lifecycle: whoever starts them activates them."""
+
+WITH_BODY = (
+    SIMULATOR,
+    "imu_fusion",
+    "whole_body_controller",
+    "joint_controller",
+    "inverse_kinematics_server",
+    "gait_planner",
+    "footstep_generation_server",
+    "navigation_action_server",
+    "dance_action_server",
+)
+"""Nodes that load the robot's model: their parameters `model_file` and `joint_map` say which."""
+
+ALL = "all"
 
 _PACED = "physics"  # the group that a timer paces, to the millisecond
 
@@ -74,9 +93,7 @@ def _make(name: str, values: dict[str, Any], replacement: str | None) -> Node:
     if name != SIMULATOR:
         values["use_sim_time"] = True
     make_node: Callable[..., Node] = (
-        getattr(import_module(f"{name}.{name}"), name.title().replace("_", ""))
-        if replacement is None
-        else replacing.node_class(replacement)
+        node_class(name) if replacement is None else replacing.node_class(replacement)
     )
     overrides = [Parameter(key, value=value) for key, value in values.items()]
     node = make_node(parameter_overrides=overrides)
@@ -86,9 +103,27 @@ def _make(name: str, values: dict[str, Any], replacement: str | None) -> Node:
     return node
 
 
+def node_class(name: str) -> Callable[..., Node]:
+    """The class of one of the robot's nodes, which is in the package of its name."""
+    found: Callable[..., Node] = getattr(import_module(f"{name}.{name}"), name.title().replace("_", ""))
+    return found
+
+
 def all_nodes() -> list[str]:
     """The names of all nodes of the robot."""
     return [name for names in GROUPS.values() for name in names]
+
+
+def chosen(names: str, without: str = "") -> list[str]:
+    """The nodes that lists with commas ask for; `ALL` are all. Raises ReplacementError."""
+    known = all_nodes()
+    wanted = known if names == ALL else _listed(names, known)
+    left_out = _listed(without, known)
+    return [name for name in wanted if name not in left_out]
+
+
+def _listed(names: str, known: list[str]) -> list[str]:
+    return [replacing.checked(name.strip(), known) for name in names.split(",") if name.strip()]
 
 
 def members(group: str, *, with_extra: bool) -> tuple[str, ...]:
@@ -101,6 +136,7 @@ def main() -> None:
     parameters, replaced, group, *names = sys.argv[1:]
     nodes: list[Node] = []
     with contextlib.suppress(KeyboardInterrupt):  # whenever it comes
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         threading.Thread(target=_end_with_parent, daemon=True).start()
         rclpy.init(args=[])
         with until_shutdown():

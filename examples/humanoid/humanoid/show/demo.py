@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import json
 import math
-import os
+import secrets
 import signal
 import subprocess
 import sys
@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 import rclpy
@@ -26,22 +27,25 @@ from ..data import Mode
 from ..robot.external import load_model
 from ..robot.joint_map import ModelError
 from ..simulation.rendering import RenderingError, check
-from . import crew, report
+from . import crew, parts, report
 from .audience import Audience, AudienceError
 from .director import Director
-from .recorder import Recorder
+from .recorder import Recorder, check_writable
 from .replacing import ReplacementError, checked, split
 from .scenarios import ScenarioFileError, read
-from .web import vendor
 from .window import Window, WindowError, display
 
 _LIMIT = 600.0  # s of real time for a scenario
 _TURN = 0.1  # s of real time between checks of windows and processes
-_WITH_BODY = ("imu_fusion", "whole_body_controller", "joint_controller", "inverse_kinematics_server")
 _DISCOVERY = 0.7  # s that DDS has to find another robot
-_ENDING = 5.0  # s that a process has to end
+_TOKEN = 18  # bytes of the page's token
 _INTERRUPTED = "interrupted"
 _CODE_INTERRUPTED = 130  # as for all commands of ifgen
+_CODE_TERMINATED = 143
+
+
+class _TerminatedError(KeyboardInterrupt):
+    """SIGTERM came: it ends everything as Ctrl-C does, with its own exit code."""
 
 
 class _WindowClosedError(Exception):
@@ -67,6 +71,7 @@ class Options:
     transport: str = "local"
     record: Path | None = None
     web: int | None = None  # the port; 0: any free one
+    host: str = ""  # another address than this machine's own; who has the page's token may come
     window: bool = False  # if there is a display
     realtime: bool = False
     seed: int = 0
@@ -86,13 +91,13 @@ def main(options: Options) -> int:
     """Play a scenario; the exit code is 0 if the robot did what it was asked to and did not fall."""
     try:
         load_model(*options.model_parameters)  # its errors should be reported before nodes start
-        if options.web is not None:
-            vendor.fetch()
         if options.record is not None:
+            check_writable(options.record)
             check()
-    except (ModelError, RenderingError, vendor.VendorError) as error:
+    except (ModelError, RenderingError) as error:
         sys.exit(f"error: {error}")
-    # Ctrl-C ends the scenario; the summary is still printed.
+    # Ctrl-C and SIGTERM end the scenario; the summary is still printed.
+    signal.signal(signal.SIGTERM, _terminate)
     rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     try:
         show = _Show(options)
@@ -104,6 +109,10 @@ def main(options: Options) -> int:
     finally:
         show.close()
         rclpy.try_shutdown()
+
+
+def _terminate(number: int, frame: FrameType | None) -> None:
+    raise _TerminatedError
 
 
 class _Show:
@@ -123,6 +132,8 @@ class _Show:
         self._director = Director(self._say, lambda: audience.is_over)
         self._recorder = Recorder(load_model(*options.model_parameters)) if options.record else None
         self._window = self._open_window() if options.window and display() else None
+        if options.window and not display():
+            print("no display for a window: see the robot with --web or --record FILE.gif", flush=True)
         known = crew.all_nodes()
         self._without = {checked(name, known) for name in options.without}
         self._replaced = dict(split(text, known) for text in options.replace)
@@ -138,9 +149,11 @@ class _Show:
         else:
             time.sleep(_DISCOVERY)
             self._refuse_company(0)
-            self._processes = [self._start(group, names) for group, names in groups.items()]
+            documents = [json.dumps(self._parameters()), json.dumps(self._replaced)]
+            started = (parts.start([*documents, group, *names]) for group, names in groups.items())
+            self._processes = list(started)
         if options.web is not None:
-            self._nodes.append(_serve(options.web))
+            self._nodes.append(_serve(options, audience))
         for node in self._nodes:
             self._executor.add_node(node)
 
@@ -159,7 +172,7 @@ class _Show:
 
     def play(self) -> int:
         """Spin until the scenario is over, and report how it went."""
-        problem, outcome = "", "done"
+        problem, outcome, code = "", "done", 0
         try:
             for _ in self._turns():
                 if self._director.is_over and not self._options.idle:
@@ -167,8 +180,9 @@ class _Show:
                     break
             else:
                 problem = f"not over after {_LIMIT:.0f} s"
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as error:
             problem = _INTERRUPTED
+            code = _CODE_TERMINATED if isinstance(error, _TerminatedError) else _CODE_INTERRUPTED
         except _WindowClosedError:
             outcome = "window closed"
         except _PartEndedError as error:
@@ -178,22 +192,15 @@ class _Show:
         recorded = True
         if self._recorder is not None and self._options.record is not None:
             recorded = self._record(self._recorder, self._options.record)
-        if self._options.web is not None and problem != _INTERRUPTED:
+        if self._options.web is not None and not code:
             self._stay()
-        if problem == _INTERRUPTED:
-            return _CODE_INTERRUPTED
+        if code:
+            return code
         return 1 if problem or self._director.score.falls or not recorded else 0
 
     def close(self) -> None:
         """End all nodes and processes."""
-        for process in self._processes:
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT)
-        for process in self._processes:
-            try:
-                process.wait(_ENDING)
-            except subprocess.TimeoutExpired:
-                process.kill()
+        parts.end(self._processes)
         for node in self._nodes:
             node.destroy_node()
         self._executor.shutdown()
@@ -276,31 +283,28 @@ class _Show:
         if options.transport != "local":
             # On real rclpy a message costs each receiver a hundred microseconds, and every node receives the
             # clock.
-            simulator["clock_period"] = simulator["ground_truth_period"] = 0.02
+            simulator["ground_truth_period"] = 0.02
         # A machine may be busy, and processes start and are discovered one after another.
         simulator["patience"] = 5.0
         model_file, joint_map = options.model_parameters
         body = {"model_file": model_file, "joint_map": joint_map}
-        parameters = {**dict.fromkeys(_WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
+        parameters = {**dict.fromkeys(crew.WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
+        parameters["camera_driver"] = {"streaming": options.camera}
         for node, values in self._scenario.items():
             parameters[node] = {**parameters.get(node, {}), **values}
         return parameters
 
-    def _start(self, group: str, names: tuple[str, ...]) -> subprocess.Popen[bytes]:
-        """Start a group of nodes as a process of its own, with the paths of this one."""
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        documents = [json.dumps(self._parameters()), json.dumps(self._replaced)]
-        command = [sys.executable, "-m", "humanoid.show.crew", *documents, group, *names]
-        # Its stdin ends when this process ends, however that happens.
-        return subprocess.Popen(command, env=environment, stdin=subprocess.PIPE)
 
+def _serve(options: Options, audience: Audience) -> Node:
+    # Their libraries take time to import.
+    from .web.server import LOOPBACK
+    from .web.view_node import WebView
 
-def _serve(port: int) -> Node:
-    from .web.view_node import WebView  # its libraries take time to import
-
+    host, port = options.host or LOOPBACK, options.web or 0
+    token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port)
+        view = WebView(port, host, token, audience)
     except OSError as error:
-        sys.exit(f"error: 127.0.0.1:{port}: {error.strerror}; choose another port with --port, or 0 for any")
+        sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)
     return view

@@ -9,16 +9,19 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from geometry_msgs.msg import WrenchStamped
-from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState, Stance, TaskStatus
+from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState, ObstacleTouch, Stance, TaskStatus
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
+from visualization_msgs.msg import MarkerArray
 
 from ..data import SECOND, Footstep, Mode
 from ..planning.tasks import task_of
+from ..robot.obstacles import Solid
 from ..ros import messages
+from ..ros.markers import read_obstacle_markers
 from ..spatial import Array
 from .audience import PUSH_TIME
 
@@ -43,6 +46,8 @@ class Score:
     goal_errors: list[float] = field(default_factory=list)
     dances: int = 0
     pushes: int = 0
+    obstacles: int = 0  # in the scene
+    touches: int = 0  # of obstacles by links of the robot
     stop_times: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)  # tasks that failed though nobody stopped the robot
 
@@ -69,6 +74,7 @@ class Director(Node):
         self._task_begun = 0.0
         self._is_stopped = False
         self._planned: dict[int, Footstep] = {}
+        self._solids: dict[str, Solid] = {}
         self._truth: tuple[Array, Array] | None = None
         self._middle: Array | None = None  # between the soles, at the last landing
         self._base: Array | None = None
@@ -81,6 +87,8 @@ class Director(Node):
             (FootstepPlan, "/footsteps/upcoming", _LATCHED, self._on_plan),
             (EmergencyStop, "/emergency_stop", _LATCHED, self._on_stop),
             (WrenchStamped, "/humanoid_simulator/push", 10, self._on_push),
+            (MarkerArray, "/humanoid_simulator/obstacles", _LATCHED, self._on_obstacles),
+            (ObstacleTouch, "/humanoid_simulator/touches", 10, self._on_touch),
             (Stance, "/humanoid_simulator/ground_truth/stance", _LATEST, self._on_truth),
             (Odometry, "/humanoid_simulator/ground_truth/odom", _LATEST, self._on_odometry),
         )
@@ -167,6 +175,17 @@ class Director(Node):
         self.score.pushes += 1
         degrees = math.degrees(math.atan2(y, x)) % 360
         self._say(f"pushed with {math.hypot(x, y):g} N s towards {degrees:.0f} deg")
+
+    def _on_obstacles(self, message: MarkerArray) -> None:
+        solids = {solid.name: solid for solid in read_obstacle_markers(message)}
+        for name, solid in solids.items():
+            if name in self._solids and solid != self._solids[name]:
+                self._say(f"{name} is moved to ({solid.x:g} m, {solid.y:g} m)")
+        self._solids, self.score.obstacles = solids, len(solids)
+
+    def _on_touch(self, message: ObstacleTouch) -> None:
+        self.score.touches += 1
+        self._say(f"touches {message.obstacle} with {message.link}")
 
     def _on_stop(self, message: EmergencyStop) -> None:
         if message.active != self._is_stopped:

@@ -10,10 +10,13 @@ from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
+from visualization_msgs.msg import MarkerArray
 
 from ..data import Footstep
 from ..robot.model import HumanoidModel
+from ..robot.obstacles import Solid
 from ..ros import messages
+from ..ros.markers import read_obstacle_markers
 from ..spatial import Array
 
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -21,18 +24,20 @@ _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Follower(Node, ABC):
-    """Combines joint states and ground truth, and keeps the next footsteps."""
+    """Combines joint states and ground truth, and keeps the next footsteps and the obstacles."""
 
     def __init__(self, name: str, model: HumanoidModel) -> None:
         super().__init__(name)
         self._model = model
         self._joints: Array | None = None
         self._steps: tuple[Footstep, ...] = ()
+        self.solids: tuple[Solid, ...] = ()
         self.create_subscription(JointState, "/joint_states", self._on_joints, _LATEST)
         self.create_subscription(
             Odometry, "/humanoid_simulator/ground_truth/odom", self._on_odometry, _LATEST
         )
         self.create_subscription(FootstepPlan, "/footsteps/upcoming", self._on_plan, _LATCHED)
+        self.create_subscription(MarkerArray, "/humanoid_simulator/obstacles", self._on_obstacles, _LATCHED)
 
     @abstractmethod
     def wants(self, stamp: int) -> bool:
@@ -58,3 +63,6 @@ class Follower(Node, ABC):
 
     def _on_plan(self, message: FootstepPlan) -> None:
         self._steps = messages.read_footstep_plan(message).steps
+
+    def _on_obstacles(self, message: MarkerArray) -> None:
+        self.solids = read_obstacle_markers(message)

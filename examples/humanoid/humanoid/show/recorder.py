@@ -8,6 +8,7 @@ import mujoco
 
 from ..data import Footstep
 from ..robot.model import HumanoidModel
+from ..robot.obstacles import Solid
 from ..simulation.rendering import FRAME_TIME, FollowCamera, Picture, RenderingError, save_gif, save_png
 from ..simulation.sim import Simulator
 from ..spatial import Array
@@ -18,12 +19,23 @@ _SPEED = 2  # of the animation: each picture is shown for half the time that it 
 _PERIOD = FRAME_TIME * 1_000_000 * _SPEED  # ns of simulated time between pictures
 
 
+def check_writable(path: Path) -> None:
+    """Raise RenderingError if a file cannot be written, which permissions alone do not tell."""
+    existed = path.exists()
+    try:
+        path.open("ab").close()
+        if not existed:
+            path.unlink()
+    except OSError as error:
+        raise RenderingError(f"--record: {path} cannot be written: {error.strerror}") from None
+
+
 class Recorder(Follower):
     """Remembers postures and footsteps; it draws at the end, when time no longer matters."""
 
     def __init__(self, model: HumanoidModel) -> None:
         super().__init__("recorder", model)
-        self._shots: list[tuple[Array, tuple[Footstep, ...]]] = []
+        self._shots: list[tuple[Array, tuple[Footstep, ...], tuple[Solid, ...]]] = []
         self._due = 0
 
     def save(self, path: Path) -> None:
@@ -49,11 +61,16 @@ class Recorder(Follower):
     def take(self, stamp: int, posture: Array, steps: tuple[Footstep, ...]) -> None:
         """Keep the posture."""
         self._due = stamp + _PERIOD
-        self._shots.append((posture, steps))
+        self._shots.append((posture, steps, self.solids))
 
+    @staticmethod
     def _draw(
-        self, camera: FollowCamera, stage: Simulator, posture: Array, steps: tuple[Footstep, ...]
+        camera: FollowCamera,
+        stage: Simulator,
+        posture: Array,
+        steps: tuple[Footstep, ...],
+        solids: tuple[Solid, ...],
     ) -> Picture:
         stage.data.qpos[:] = posture
-        mujoco.mj_forward(self._model.mj, stage.data)
-        return camera.picture(stage, steps)
+        mujoco.mj_forward(stage.model.mj, stage.data)
+        return camera.picture(stage, steps, solids)

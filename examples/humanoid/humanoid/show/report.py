@@ -64,6 +64,8 @@ def summary(scenario: str, outcome: str, simulated: float, real: float, score: S
         rows["pushes"] = str(score.pushes)
     if score.stop_times:
         rows["stop after cancel"] = f"{max(score.stop_times):.2f} s at most"
+    if score.obstacles:
+        rows["touches"] = f"{score.touches} (obstacles: {score.obstacles})"
     rows["falls"] = str(score.falls)
     return rows
 

@@ -6,7 +6,6 @@ of ROS with the tasks of high_level_task_manager and the events of audience.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -23,8 +22,10 @@ class ScenarioFileError(ValueError):
 
 def folder() -> Path:
     """The folder of the scenarios: beside the library, or where it is installed."""
-    beside = Path(__file__).resolve().parents[2] / "config" / "scenarios"
-    return beside if beside.is_dir() else Path(sys.prefix) / "share" / "humanoid" / "config" / "scenarios"
+    above = Path(__file__).resolve().parents
+    places = [above[2], *(folder / "share" / "humanoid" for folder in above[3:])]
+    found = [place / "config" / "scenarios" for place in places]
+    return next((place for place in found if place.is_dir()), found[0])
 
 
 def names() -> list[str]:
@@ -32,16 +33,20 @@ def names() -> list[str]:
     return sorted(path.stem for path in folder().glob("*.yaml"))
 
 
+def find(name: str) -> Path:
+    """The file of a scenario: its name, or the path of a file. Raises ScenarioFileError."""
+    path = Path(name) if name.endswith((".yaml", ".yml")) else folder() / f"{name}.yaml"
+    if not path.is_file():
+        known = ", ".join(names())
+        raise ScenarioFileError(f"there is no scenario {name}: choose one of {known}, or a .yaml file")
+    return path.resolve()
+
+
 def read(name: str) -> Parameters:
     """The parameters of a scenario: its name, or the path of a file. Raises ScenarioFileError."""
-    path = Path(name) if name.endswith((".yaml", ".yml")) else folder() / f"{name}.yaml"
+    path = find(name)
     try:
         said = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        known = ", ".join(names())
-        raise ScenarioFileError(
-            f"there is no scenario {name}: choose one of {known}, or a .yaml file"
-        ) from None
     except (OSError, UnicodeDecodeError) as error:
         raise ScenarioFileError(f"{path} cannot be read: {error}") from None
     except yaml.YAMLError as error:

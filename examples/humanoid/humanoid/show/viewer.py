@@ -13,13 +13,15 @@ import queue
 import signal
 import sys
 import threading
+from dataclasses import astuple
 from typing import Any
 
 import mujoco
 
 from ..data import Footstep, Leg
 from ..robot.external import load_model
-from ..simulation.rendering import aim, draw_footsteps
+from ..robot.obstacles import Solid
+from ..simulation.rendering import aim, draw_footsteps, draw_solids
 
 SHOWN = "shown"
 _LOOK = 0.1  # s between checks that the window is still open
@@ -29,10 +31,13 @@ _NICE = 10  # without a graphics card it draws as much as it can, and the robot 
 Frame = dict[str, Any]
 
 
-def frame_line(seconds: float, posture: list[float], steps: tuple[Footstep, ...]) -> bytes:
-    """A line for `main` to read: simulated time, `qpos`, and the next footsteps."""
+def frame_line(
+    seconds: float, posture: list[float], steps: tuple[Footstep, ...], solids: tuple[Solid, ...] = ()
+) -> bytes:
+    """A line for `main` to read: simulated time, `qpos`, the next footsteps, and obstacles."""
     plan = [[int(step.leg), step.x, step.y, step.yaw] for step in steps]
-    return json.dumps({"time": seconds, "posture": posture, "steps": plan}).encode() + b"\n"
+    frame = {"time": seconds, "posture": posture, "steps": plan, "solids": [astuple(s) for s in solids]}
+    return json.dumps(frame).encode() + b"\n"
 
 
 def main() -> None:
@@ -111,6 +116,7 @@ class _Window:
         with self._viewer.lock():
             self._viewer.user_scn.ngeom = 0
             draw_footsteps(self._viewer.user_scn, steps, self._model.sole)
+            draw_solids(self._viewer.user_scn, [Solid(*solid) for solid in frame["solids"]])
             way = _HASTE * (stage.qpos[:2] - self._at)
             self._viewer.cam.lookat[:2] += way
             self._at += way

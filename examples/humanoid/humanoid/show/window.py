@@ -63,7 +63,7 @@ class Window(Follower):
         """Show the posture, unless the viewer is still busy with the one before."""
         self._shown = time.monotonic()
         if not self._frames.full():
-            self._frames.put(frame_line(stamp / SECOND, posture.tolist(), steps))
+            self._frames.put(frame_line(stamp / SECOND, posture.tolist(), steps, self.solids))
 
     def destroy_node(self) -> None:
         """Close the window too."""

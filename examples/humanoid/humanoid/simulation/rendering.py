@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from ..data import Footstep, Leg
 from ..robot.model import HumanoidModel, SoleGeometry
+from ..robot.obstacles import Solid
 from ..spatial import rotation_z
 from .sim import Simulator
 
@@ -95,11 +96,14 @@ class FollowCamera:
         self._renderer = _renderer(model, width, height)
         self._camera = mujoco.MjvCamera()
 
-    def picture(self, simulator: Simulator, steps: Sequence[Footstep] = ()) -> Picture:
-        """An image of the robot at this moment, with the next footsteps."""
+    def picture(
+        self, simulator: Simulator, steps: Sequence[Footstep] = (), solids: Sequence[Solid] = ()
+    ) -> Picture:
+        """An image of the robot at this moment, with the next footsteps, and obstacles of other models."""
         aim(self._camera, *simulator.data.qpos[:2])
         self._renderer.update_scene(simulator.data, self._camera)
         draw_footsteps(self._renderer.scene, steps, self._model.sole)
+        draw_solids(self._renderer.scene, solids)
         return np.array(self._renderer.render())
 
     def close(self) -> None:
@@ -124,6 +128,21 @@ def draw_footsteps(scene: Any, steps: Sequence[Footstep], sole: SoleGeometry) ->
             np.array([x, y, _THICK]),
             rotation_z(step.yaw).flatten(),
             np.array(_COLOURS[step.leg], dtype=np.float32),
+        )
+        scene.ngeom += 1
+
+
+def draw_solids(scene: Any, solids: Sequence[Solid]) -> None:
+    """Add obstacles to an MjvScene."""
+    kinds = {"box": mujoco.mjtGeom.mjGEOM_BOX, "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER}
+    for solid in solids[: scene.maxgeom - scene.ngeom]:
+        mujoco.mjv_initGeom(
+            scene.geoms[scene.ngeom],
+            kinds[solid.kind],
+            np.array([solid.width / 2, solid.width / 2, solid.height / 2]),
+            np.array([solid.x, solid.y, solid.height / 2]),
+            np.eye(3).flatten(),
+            np.array([*solid.colour, 1.0], dtype=np.float32),
         )
         scene.ngeom += 1
 

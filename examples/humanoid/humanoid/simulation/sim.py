@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import mujoco
@@ -10,9 +11,11 @@ import numpy as np
 
 from ..data import SECOND, FootWrench, Imu, JointCommand, JointStates, Odometry, Sensors, Stance, Support
 from ..robot.model import PERIOD, HumanoidModel
+from ..robot.obstacles import Solid
 from ..robot.table import SIDES
 from ..seeds import generator
 from ..spatial import Array, matrix_of, quaternion_of, rotation_vector, yaw_of
+from .obstacles import Obstacles
 from .safety import CommandGate
 
 CONTACT_FORCE = 5.0  # N on a sole that count as contact
@@ -36,11 +39,18 @@ class Simulator:
     """One robot on its floor. Only `step` advances time."""
 
     def __init__(
-        self, model: HumanoidModel, seed: int = 0, noise: Noise = QUIET, period: int = PERIOD
+        self,
+        model: HumanoidModel,
+        seed: int = 0,
+        noise: Noise = QUIET,
+        period: int = PERIOD,
+        solids: Sequence[Solid] = (),
     ) -> None:
+        """Set up; `solids` are the obstacles that the model was loaded with."""
         self.model = model
         self.data = model.data()
         self.gate = CommandGate(model.lower, model.upper)
+        self.obstacles = Obstacles(model.mj, self.data, solids)
         self._noise = noise
         self._seed = seed
         self._period = period
@@ -54,6 +64,7 @@ class Simulator:
         self._random = generator(self._seed, "sim")
         self._pushes.clear()
         mujoco.mj_resetData(self.model.mj, self.data)
+        self.obstacles.reset()
         if posture is not None:
             self.data.qpos[self.model.qpos] = posture
             self.data.ctrl[self.model.actuators] = posture

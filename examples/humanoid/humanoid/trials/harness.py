@@ -13,7 +13,7 @@ from ..control.posture import standing
 from ..control.reference import GaitParameters
 from ..control.standby import Standby
 from ..data import GaitState, JointCommand, Mode, Odometry, Sensors
-from ..planning.footsteps import PlanStatus, plan_footsteps
+from ..planning.footsteps import PlanStatus, StepLimits, fitted, plan_footsteps
 from ..planning.gait import GaitPlanner
 from ..robot import model as models
 from ..seeds import generator
@@ -21,7 +21,7 @@ from ..sensing.estimator import StateEstimator
 from ..simulation.sim import QUIET, Noise, Simulator
 from ..spatial import Array, wrap
 
-FALLEN_HEIGHT = 0.45  # of base_link, metres
+FALLEN_HEIGHT = 0.45  # of our base_link, metres
 _LEASE = 50_000_000  # ns
 
 
@@ -63,7 +63,8 @@ class Lockstep:
         self.simulator = Simulator(self.model, seed, noise)
         self.controller = WholeBodyController(self.model, parameters)
         self.estimator = StateEstimator(self.model)
-        self.planner = GaitPlanner()
+        self.limits = fitted(StepLimits(), self.model.body)
+        self.planner = GaitPlanner(self.limits)
         self.refused = ""  # why the controller refused the last plan
         self.true_state = true_state
         self.gait: GaitState | None = None
@@ -86,7 +87,8 @@ class Lockstep:
     @property
     def fell(self) -> bool:
         """Whether the robot has fallen, whatever its controller reports."""
-        return bool(self.simulator.data.qpos[2] < FALLEN_HEIGHT) or self.controller.mode is Mode.FALLEN
+        lies = self.simulator.data.qpos[2] < FALLEN_HEIGHT * self.model.body.scale
+        return bool(lies) or self.controller.mode is Mode.FALLEN
 
     def tick(self) -> None:
         """Run one control period: sense, estimate, plan, control, step. Parts in `dead` do nothing."""
@@ -139,7 +141,8 @@ class Lockstep:
     def go_to(self, goal: tuple[float, float, float], limit: float = 60.0) -> float:
         """Plan to a goal from the estimated stance, and walk; returns the distance left."""
         stance = self.controller.state().stance
-        result = plan_footsteps(stance, goal, first_index=self.controller.stepping.index)
+        index = self.controller.stepping.index
+        result = plan_footsteps(stance, goal, limits=self.limits, first_index=index)
         if result.status is not PlanStatus.PLANNED:
             raise ValueError(result.message)
         self.planner.walk(result.plan)

@@ -1,4 +1,4 @@
-// A robot from its URDF: boxes, cylinders and spheres; ours has no other shapes. Lengths in metres, z up.
+// A robot from its URDF: boxes, cylinders, spheres and capsules. Lengths in metres, z up.
 import * as THREE from "three";
 
 const numbers = (text, fallback) => (text ?? fallback).trim().split(/\s+/).map(Number);
@@ -9,46 +9,58 @@ function place(object, origin) {
   object.rotation.set(roll, pitch, yaw, "ZYX"); // URDF: about the fixed axes x, y, z
 }
 
+// three.js has cylinders and capsules along y.
 function shape(geometry) {
   const form = geometry?.firstElementChild;
+  const [radius, length] = ["radius", "length"].map((name) => Number(form?.getAttribute(name)));
   switch (form?.tagName) {
     case "box":
       return new THREE.BoxGeometry(...numbers(form.getAttribute("size")));
     case "sphere":
-      return new THREE.SphereGeometry(Number(form.getAttribute("radius")), 24, 16);
-    case "cylinder": {
-      const [radius, length] = ["radius", "length"].map((name) => Number(form.getAttribute(name)));
-      return new THREE.CylinderGeometry(radius, radius, length, 24).rotateX(Math.PI / 2); // three.js has them along y
-    }
+      return new THREE.SphereGeometry(radius, 32, 20);
+    case "cylinder":
+      return new THREE.CylinderGeometry(radius, radius, length, 32).rotateX(Math.PI / 2);
+    case "capsule":
+      return new THREE.CapsuleGeometry(radius, length, 12, 32).rotateX(Math.PI / 2);
     default:
       return null;
   }
 }
 
+function colors(robot) {
+  const found = new Map();
+  for (const element of robot.querySelectorAll("material[name]")) {
+    const color = element.querySelector("color")?.getAttribute("rgba");
+    if (color) found.set(element.getAttribute("name"), numbers(color));
+  }
+  return found;
+}
+
+function mesh(visual, materials) {
+  const geometry = shape(visual.querySelector("geometry"));
+  if (!geometry) return null;
+  const material = visual.querySelector("material");
+  const own = material?.querySelector("color")?.getAttribute("rgba");
+  const [r, g, b] = own ? numbers(own) : (materials.get(material?.getAttribute("name")) ?? [0.75, 0.77, 0.8]);
+  const color = new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace);
+  const made = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({ color, roughness: 0.55, metalness: 0.1 }));
+  made.castShadow = made.receiveShadow = true;
+  place(made, visual.querySelector("origin"));
+  return made;
+}
+
 export class Robot extends THREE.Group {
   constructor(urdf) {
     super();
-    const document = new DOMParser().parseFromString(urdf, "text/xml");
-    const robot = document.documentElement;
-    const materials = new Map();
-    for (const element of robot.querySelectorAll("material[name]")) {
-      const color = element.querySelector("color")?.getAttribute("rgba");
-      if (color) materials.set(element.getAttribute("name"), numbers(color));
-    }
+    const robot = new DOMParser().parseFromString(urdf, "text/xml").documentElement;
+    const materials = colors(robot);
     this.joints = new Map();
     const links = new Map();
     for (const element of robot.querySelectorAll(":scope > link")) {
       const link = new THREE.Group();
       for (const visual of element.querySelectorAll(":scope > visual")) {
-        const geometry = shape(visual.querySelector("geometry"));
-        if (!geometry) continue;
-        const named = visual.querySelector("material")?.getAttribute("name");
-        const [r, g, b] = materials.get(named) ?? [0.75, 0.77, 0.8];
-        const color = new THREE.Color().setRGB(r, g, b, THREE.SRGBColorSpace);
-        const mesh = new THREE.Mesh(geometry, new THREE.MeshStandardMaterial({ color, roughness: 0.6 }));
-        mesh.castShadow = true;
-        place(mesh, visual.querySelector("origin"));
-        link.add(mesh);
+        const part = mesh(visual, materials);
+        if (part) link.add(part);
       }
       links.set(element.getAttribute("name"), link);
     }
@@ -66,10 +78,17 @@ export class Robot extends THREE.Group {
     for (const root of roots) this.add(links.get(root));
   }
 
+  // Angles by joint, in radians.
   pose(angles) {
     for (const [name, angle] of Object.entries(angles)) {
       const joint = this.joints.get(name);
       joint?.link.quaternion.setFromAxisAngle(joint.axis, angle);
     }
+  }
+
+  // [x, y, z, qx, qy, qz, qw] of its root.
+  move([x, y, z, ...orientation]) {
+    this.position.set(x, y, z);
+    this.quaternion.set(...orientation);
   }
 }

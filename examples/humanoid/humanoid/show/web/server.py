@@ -1,65 +1,81 @@
-"""Serves the page on 127.0.0.1: its files, a stream of states, and the requests of its buttons.
+"""Serves the page: its files, a stream of what happens, and the commands of its visitors.
 
-States are sent as server-sent events: one way, over plain HTTP, and the browser reconnects on its own.
+What happens is sent as server-sent events: one way, over plain HTTP, and the browser reconnects on its own.
 """
 
 from __future__ import annotations
 
+import hmac
 import json
 import sys
 import threading
 from collections.abc import Callable, Mapping
 from http import HTTPStatus
+from http.cookies import CookieError, SimpleCookie
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from typing import Any
-
-from . import vendor
+from urllib.parse import parse_qs, urlsplit
 
 _FOLDER = Path(__file__).parent
 _TYPES = {
     ".html": "text/html; charset=utf-8",
     ".js": "text/javascript; charset=utf-8",
     ".css": "text/css; charset=utf-8",
-    ".svg": "image/svg+xml",
+    ".json": "application/json",
+    ".jpg": "image/jpeg",
     "": "text/plain; charset=utf-8",
 }
-_FILES = {
-    "/": "index.html",
-    **{f"/{name}": name for name in ("style.css", "view.js", "robot.js")},
-}
-_THREE = {f"/vendor/{name}": name for name in ("three.module.js", "three.core.js", "OrbitControls.js")}
+_THREE = ("three/three.module.js", "three/three.core.js", "three/OrbitControls.js")
+_OWN = ("style.css", "view.js", "scene.js", "robot.js", "panel.js", "graph.js", "hands.js")
+_FILES = {"/": "index.html", **{f"/{name}": name for name in (*_OWN, *_THREE)}}
+LOOPBACK = "127.0.0.1"
+_LONGEST = 4096  # bytes of a command
 _KEEP_ALIVE = 5.0  # s between comments on an idle stream, so that a closed page is noticed
 _PATIENCE = 10.0  # s for a client that sends nothing, or reads nothing
 _HEADERS = {
     "Cache-Control": "no-store",
     # In a frame of another page, users could be tricked into clicking on something that they do not see.
     "Content-Security-Policy": "frame-ancestors 'none'",
+    "Referrer-Policy": "no-referrer",  # the address may hold the token
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
 }
+
+Document = tuple[str, bytes]
+"""The suffix of its type, and its bytes."""
+Answer = tuple[bool, str]
+"""Whether a command was accepted, and what came of it or why not, in words."""
 
 
 class PageServer:
     """A web server on a thread of its own.
 
-    `documents` are functions by path that make further pages on request, each (suffix of its type, text);
-    `buttons` are the functions for POST requests, by path. The server's threads call both.
+    `documents` are functions by path that make further pages on request; `ask` does a command, and may take
+    its time. The server's threads call both. With a `token`, nobody gets anything without it; the page's
+    address has it. Without one, `host` must be this machine only.
     """
 
     def __init__(
         self,
         port: int,
-        documents: Mapping[str, Callable[[], tuple[str, str]]],
-        buttons: Mapping[str, Callable[[], None]],
+        documents: Mapping[str, Callable[[], Document]],
+        ask: Callable[[Mapping[str, Any]], Answer],
+        host: str = LOOPBACK,
+        token: str = "",
     ) -> None:
-        self._documents = documents
-        self._buttons = buttons
+        if not token and host != LOOPBACK:
+            raise ValueError(f"a page on {host} needs a token")
+        self.documents = documents
+        self.ask = ask
+        self.token = token
+        self._host = host
         self._news = threading.Condition()
-        self._state = ""
+        self._channels: dict[str, tuple[int, str]] = {}  # number of the change, JSON
         self._number = 0
+        self._streams = 0
         self._closed = False
-        self._http = _Server(("127.0.0.1", port), type("Handler", (_Handler,), {"page": self}))
+        self._http = _Server((host, port), type("Handler", (_Handler,), {"page": self}))
         self._thread = threading.Thread(target=self._http.serve_forever, name="web page", daemon=True)
         self._thread.start()
 
@@ -70,16 +86,23 @@ class PageServer:
 
     @property
     def url(self) -> str:
-        """The address of the page."""
-        return f"http://127.0.0.1:{self.port}/"
+        """The address of the page, with its token if it has one."""
+        query = f"?token={self.token}" if self.token else ""
+        return f"http://{self._host}:{self.port}/{query}"
 
-    def show(self, state: Mapping[str, Any]) -> None:
-        """Send a state to every open page; a slow page receives only the latest."""
-        text = json.dumps(state, separators=(",", ":"), allow_nan=False)
+    @property
+    def watchers(self) -> int:
+        """The number of open pages."""
+        return self._streams
+
+    def show(self, channel: str, value: object) -> None:
+        """Send a value to every open page unless it is the last one; a slow page gets only the newest."""
+        text = json.dumps(value, separators=(",", ":"), allow_nan=False)
         with self._news:
-            self._state = text
-            self._number += 1
-            self._news.notify_all()
+            if self._channels.get(channel, (0, ""))[1] != text:
+                self._number += 1
+                self._channels[channel] = self._number, text
+                self._news.notify_all()
 
     def close(self) -> None:
         """End all streams and the server."""
@@ -90,32 +113,22 @@ class PageServer:
         self._http.server_close()
         self._thread.join()
 
-    def document(self, path: str) -> tuple[str, str] | None:
-        """A page made on request, as (suffix of its type, text)."""
-        make = self._documents.get(path)
-        return make() if make else None
+    def news(self, seen: int) -> tuple[int, list[tuple[str, str]]] | None:
+        """Wait for values after change number `seen`.
 
-    def press(self, path: str) -> bool:
-        """Call a button's function; False if there is no such button."""
-        action = self._buttons.get(path)
-        if action is not None:
-            action()
-        return action is not None
-
-    def next_state(self, seen: int) -> tuple[int, str] | None:
-        """Wait for a state after number `seen`: its number and JSON, "" if none arrived; None at the end."""
+        Returns the number of the newest, and (channel, JSON) of each, none if nothing came; None at the end.
+        """
         with self._news:
             self._news.wait_for(lambda: self._closed or self._number > seen, _KEEP_ALIVE)
             if self._closed:
                 return None
-            return (self._number, self._state) if self._number > seen else (seen, "")
+            new = [(name, text) for name, (number, text) in self._channels.items() if number > seen]
+            return self._number, new
 
-
-def _file(path: str) -> Path | None:
-    """The file at a path of the page."""
-    if path in _FILES:
-        return _FOLDER / _FILES[path]
-    return vendor.folder() / _THREE[path] if path in _THREE else None
+    def count(self, difference: int) -> None:
+        """Note that a page was opened (1) or closed (-1)."""
+        with self._news:
+            self._streams += difference
 
 
 class _Server(ThreadingHTTPServer):
@@ -138,47 +151,99 @@ class _Handler(BaseHTTPRequestHandler):
     page: PageServer
 
     def do_GET(self) -> None:
-        if not self._is_local():
+        path = urlsplit(self.path).path
+        if self._brings_token():
+            self._keep_token(path)
+        elif not self._may_enter():
             return
-        if self.path == "/states":
+        elif path == "/news":
             self._stream()
-        elif (path := _file(self.path)) is not None:
-            if path.is_file():
-                self._answer(_TYPES[path.suffix], path.read_bytes())
-            else:
-                self.send_error(HTTPStatus.NOT_FOUND, "run `python -m humanoid.show.web.vendor`")
-        elif (made := self.page.document(self.path)) is not None:
-            self._answer(_TYPES[made[0]], made[1].encode())
+        elif path in _FILES:
+            file = _FOLDER / _FILES[path]
+            self._answer(_TYPES[file.suffix], file.read_bytes())
+        elif (make := self.page.documents.get(path)) is not None:
+            suffix, body = make()
+            self._answer(_TYPES[suffix], body)
         else:
             self.send_error(HTTPStatus.NOT_FOUND)
 
     def do_POST(self) -> None:
-        # A page from another site cannot set this header without a preflight request, which is never granted.
-        if not self._is_local():
+        if not self._may_enter() or not self._may_command():
             return
-        if self.headers.get("X-Humanoid") != "1":
-            self.send_error(HTTPStatus.FORBIDDEN)
-        elif self.page.press(self.path):
-            self._answer(_TYPES[""], b"")
-        else:
+        if self.path != "/command":
             self.send_error(HTTPStatus.NOT_FOUND)
+            return
+        length = self.headers.get("Content-Length") or ""
+        if not length.isascii() or not length.isdigit() or int(length) > _LONGEST:
+            self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a command has at most {_LONGEST} bytes")
+            return
+        try:
+            command = json.loads(self.rfile.read(int(length)))
+        except (ValueError, RecursionError):
+            command = None
+        if not isinstance(command, dict):
+            self.send_error(HTTPStatus.BAD_REQUEST, "a command is an object in JSON")
+            return
+        accepted, text = self.page.ask(command)
+        self._answer(_TYPES[".json"], json.dumps({"accepted": accepted, "text": text}).encode())
 
-    def _is_local(self) -> bool:
-        """Refuse host names that somebody else's DNS points here."""
+    @property
+    def _cookie(self) -> str:
+        return f"humanoid_{self.page.port}"  # browsers send cookies to all ports of a host
+
+    def _brings_token(self) -> bool:
+        """Whether the address has the token."""
+        given = parse_qs(urlsplit(self.path).query).get("token", [""])[-1]
+        return bool(self.page.token) and hmac.compare_digest(given.encode(), self.page.token.encode())
+
+    def _keep_token(self, path: str) -> None:
+        """Let the browser remember the token, and forget the address that has it."""
+        self.send_response(HTTPStatus.SEE_OTHER)
+        self.send_header("Set-Cookie", f"{self._cookie}={self.page.token}; HttpOnly; SameSite=Strict; Path=/")
+        self.send_header("Location", path if path in _FILES else "/")
+        self.send_header("Content-Length", "0")
+        self.end_headers()
+
+    def _may_enter(self) -> bool:
+        """Refuse who has no token, or without tokens host names that somebody else's DNS points here."""
+        if self.page.token:
+            try:
+                given = SimpleCookie(self.headers.get("Cookie", "")).get(self._cookie)
+            except CookieError:
+                given = None
+            token = given.value if given else ""
+            if hmac.compare_digest(token.encode(), self.page.token.encode()):
+                return True
+            self.send_error(HTTPStatus.FORBIDDEN, "open the address with the token that the demo has printed")
+            return False
         name = (self.headers.get("Host") or "").partition(":")[0]  # browsers leave port 80 out
-        if name in {"127.0.0.1", "localhost"}:
+        if name in {LOOPBACK, "localhost"}:
             return True
-        self.send_error(HTTPStatus.FORBIDDEN)
+        self.send_error(HTTPStatus.FORBIDDEN, "this page is for 127.0.0.1 only")
+        return False
+
+    def _may_command(self) -> bool:
+        """Refuse pages of other sites: they name another origin, and cannot set our header unasked."""
+        origin = self.headers.get("Origin")
+        own = f"http://{self.headers.get('Host')}"
+        if self.headers.get("X-Humanoid") == "1" and origin in (None, own):
+            return True
+        self.send_error(HTTPStatus.FORBIDDEN, "only the page itself may send commands")
         return False
 
     def _stream(self) -> None:
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", "text/event-stream")
         self.end_headers()
-        seen = 0
-        while (news := self.page.next_state(seen)) is not None:
-            seen, text = news
-            self.wfile.write(f"data: {text}\n\n".encode() if text else b": still here\n\n")
+        self.page.count(1)
+        try:
+            seen = 0
+            while (found := self.page.news(seen)) is not None:
+                seen, values = found
+                text = "".join(f"event: {channel}\ndata: {value}\n\n" for channel, value in values)
+                self.wfile.write(text.encode() or b": still here\n\n")
+        finally:
+            self.page.count(-1)
 
     def _answer(self, content_type: str, body: bytes) -> None:
         self.send_response(HTTPStatus.OK)

@@ -1,255 +1,276 @@
-"""A node that subscribes to everything and shows it on the page."""
+"""A node that shows the robot on the page, and does what the page's visitors command.
+
+It subscribes only while somebody watches: what nobody sees costs nothing.
+"""
 
 from __future__ import annotations
 
-import math
-import threading
+import io
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Mapping
+from concurrent.futures import Future
 from functools import partial
 from importlib import import_module
+from queue import SimpleQueue
 from typing import Any
 
-from action_msgs.msg import GoalStatus, GoalStatusArray
-from action_msgs.srv import CancelGoal
-from humanoid_interfaces.action import PerformDance, WalkTo
-from humanoid_interfaces.msg import BatteryStatus, EmergencyStop, FootstepPlan, GaitState
-from ifgen.graph.svg import svg
+from ifgen.graph.model import Graph
 from ifgen.observing.running_graph import FRAMEWORK_TOPICS, hidden, of_running
-from nav_msgs.msg import Odometry
-from rclpy.callback_groups import ReentrantCallbackGroup
+from PIL import Image as Pictures
+from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.srv import SetParameters
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_action_status_default
-from rosgraph_msgs.msg import Clock as ClockMessage
-from sensor_msgs.msg import JointState
-from std_msgs.msg import String
-from std_srvs.srv import SetBool
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import Image
 
-from .server import PageServer
+from ...planning.choreography import DANCES
+from ..audience import Audience
+from ..scenarios import names
+from .commands import Commands
+from .readings import READINGS, Reading
+from .server import LOOPBACK, Document, PageServer
 
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+_EVERY = QoSProfile(depth=50)
 _LATCHED = QoSProfile(
     depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL
 )
-_PERIOD = 0.04  # s between states on the page
+_PERIOD = 0.04  # s between moments on the page
+_LOOK = 1.0  # s between checks of rates and of the graph
+_ALONE = 2.0  # s without a visitor after which nothing is listened to
+_ANSWER = 8.0  # s that the robot has to answer a command
 _PICTURE = "sensor_msgs/msg/Image"
-_LOOK = 1.0  # s between checks of the graph
-_STATES = {
-    GoalStatus.STATUS_ACCEPTED: "accepted",
-    GoalStatus.STATUS_EXECUTING: "executing",
-    GoalStatus.STATUS_CANCELING: "canceling",
-    GoalStatus.STATUS_SUCCEEDED: "succeeded",
-    GoalStatus.STATUS_CANCELED: "canceled",
-    GoalStatus.STATUS_ABORTED: "aborted",
-}
+_CAMERA = "/head_camera/image_raw"
+_LINES = 40  # of the log
 
 
 class WebView(Node):
-    """Shows robot, footsteps, goals, topics and nodes on a page on 127.0.0.1, with two buttons.
+    """Shows robot, footsteps, goals, topics and nodes on a page, whose visitors can command the robot.
 
-    With `port` 0 the system chooses one; `page.url` is the address. It changes nothing unless a button is
-    pressed.
+    With `port` 0 the system chooses one; `page.url` is the address. `audience` plays the events of scenarios.
+    It changes nothing unless a visitor commands it.
     """
 
-    def __init__(self, port: int = 0) -> None:
+    def __init__(
+        self, port: int = 0, host: str = LOOPBACK, token: str = "", audience: Audience | None = None
+    ) -> None:
         super().__init__("web_view")
-        self._state: dict[str, Any] = {"joints": {}, "steps": [], "goals": {}, "topics": []}
-        self._urdf = ""
-        self._drawing = svg(of_running(self))
-        self._counts: dict[str, _Rate] = {}
-        self._types: dict[str, str] = {}
-        self._pressed: deque[Callable[[], Any]] = deque()
-        self._guard = threading.Lock()
-        self._real_time = _Speed()
-        self._group = ReentrantCallbackGroup()
-        self._cancel = {
-            name: self.create_client(CancelGoal, f"{name}/_action/cancel_goal")
-            for name in ("/walk_to", "/perform_dance")
-        }
-        self._stop = self.create_client(SetBool, "/emergency_stop/set")
-        topics: tuple[tuple[type[Any], str, QoSProfile, Callable[[Any], None]], ...] = (
-            (ClockMessage, "/clock", _LATEST, self._on_clock),
-            (JointState, "/joint_states", _LATEST, self._on_joints),
-            (Odometry, "/odom", _LATEST, self._on_odometry),
-            (FootstepPlan, "/footsteps/upcoming", _LATCHED, self._on_footsteps),
-            (GaitState, "/gait_state", _LATCHED, self._on_gait),
-            (BatteryStatus, "/battery", _LATCHED, self._on_battery),
-            (EmergencyStop, "/emergency_stop", _LATCHED, self._on_stop),
-            (String, "/robot_description", _LATCHED, self._on_description),
-        )
-        for kind, topic, qos, heard in topics:
-            self.create_subscription(kind, topic, heard, qos)
-        for name, action in (("/walk_to", WalkTo), ("/perform_dance", PerformDance)):
-            feedback = action.Impl.FeedbackMessage
-            self.create_subscription(
-                feedback, f"{name}/_action/feedback", partial(self._on_feedback, name), 10
-            )
-            self.create_subscription(
-                GoalStatusArray,
-                f"{name}/_action/status",
-                partial(self._on_status, name),
-                qos_profile_action_status_default,
-            )
-        wall = Clock(clock_type=ClockType.STEADY_TIME)
-        self.create_timer(_PERIOD, self._show, clock=wall)
-        self.create_timer(_LOOK, self._look, clock=wall)
-        self.page = PageServer(
-            port,
-            {"/robot.urdf": lambda: ("", self._urdf), "/graph.svg": lambda: (".svg", self._drawing)},
-            {
-                "/cancel": partial(self._press, self._cancel_goals),
-                "/stop": partial(self._press, partial(self._set_stop, True)),
-                "/release": partial(self._press, partial(self._set_stop, False)),
-            },
-        )
+        self._heard: dict[str, _Topic] = {}
+        self._lines: deque[list[Any]] = deque(maxlen=_LINES)
+        self._line = 0
+        self._warned: dict[str, str] = {}
+        self._simulated = 0.0
+        self._rated = (0.0, 0.0)  # real and simulated time of the last check of rates
+        self._seen = time.monotonic()  # when somebody last watched
+        self._looked = 0.0
+        self._picture = b""
+        self._pictures = 0
+        self._camera: Any = None  # the subscription to its pictures, while they are shown
+        self._asked: SimpleQueue[tuple[Mapping[str, Any], Future[tuple[bool, str]]]] = SimpleQueue()
+        self._commands = Commands(self, self._why, audience)
+        self._stream = self.create_client(SetParameters, "/camera_driver/set_parameters")
+        self.create_timer(_PERIOD, self._turn, clock=Clock(clock_type=ClockType.STEADY_TIME))
+        self.page = PageServer(port, {"/camera.jpg": self._latest_picture}, self._ask, host, token)
+        self.page.show("setup", {"dances": list(DANCES), "scenarios": names() if audience else []})
 
     def destroy_node(self) -> None:
         """Close the page too."""
         self.page.close()
         super().destroy_node()
 
-    def _on_clock(self, message: ClockMessage) -> None:
-        self._state["time"] = message.clock.sec + message.clock.nanosec * 1e-9
+    def _ask(self, command: Mapping[str, Any]) -> tuple[bool, str]:
+        """Let the node do a command, and wait for its answer: the server's threads call this."""
+        answered: Future[tuple[bool, str]] = Future()
+        self._asked.put((command, answered))
+        try:
+            return answered.result(_ANSWER)
+        except TimeoutError:
+            return False, f"no answer from the robot within {_ANSWER:g} s"
 
-    def _on_joints(self, message: JointState) -> None:
-        self._state["joints"] = dict(zip(message.name, _rounded(*message.position), strict=False))
+    def _turn(self) -> None:
+        """Do what was commanded, and show this moment."""
+        while not self._asked.empty():
+            command, answered = self._asked.get()
+            answer = partial(_answer, answered)
+            if command.get("do") == "camera":
+                answer(*self._set_camera(command.get("on") is True))
+            else:
+                self._commands.do(command, answer)
+        self._commands.tick()
+        now = time.monotonic()
+        if self.page.watchers:
+            self._seen = now
+            if not self._heard:
+                self._listen()
+            self._show()
+            if now - self._looked >= _LOOK:
+                self._looked = now
+                self._look(now)
+        elif self._heard and now - self._seen > _ALONE:
+            self._listen_no_more()
 
-    def _on_odometry(self, message: Odometry) -> None:
-        p, q = message.pose.pose.position, message.pose.pose.orientation
-        self._state["base"] = _rounded(p.x, p.y, p.z, q.x, q.y, q.z, q.w)
+    def _listen(self) -> None:
+        for topic, reading in READINGS.items():
+            qos = _LATCHED if reading.latched else _EVERY if reading.every else _LATEST
+            self._subscribe(topic, reading.kind, qos, reading)
+        self._rated = (time.monotonic(), self._simulated)
 
-    def _on_footsteps(self, message: FootstepPlan) -> None:
-        steps = message.steps
-        self._state["steps"] = [
-            [s.leg, *_rounded(s.position.x, s.position.y, s.position.z, _yaw(s.orientation))] for s in steps
-        ]
-        goal = message.goal
-        at = _rounded(goal.position.x, goal.position.y, _yaw(goal.orientation))
-        self._state["goal"] = at if steps else None
+    def _listen_no_more(self) -> None:
+        for topic in self._heard.values():
+            self.destroy_subscription(topic.subscription)
+        self._heard.clear()
+        self._set_camera(False)
 
-    def _on_gait(self, message: GaitState) -> None:
-        self._state["mode"] = _constant(GaitState, "MODE_", message.mode)
-        self._state["reason"] = message.reason
-
-    def _on_battery(self, message: BatteryStatus) -> None:
-        level = _constant(BatteryStatus, "LEVEL_", message.level)
-        self._state["battery"] = {"charge": _rounded(message.charge)[0], "level": level}
-
-    def _on_stop(self, message: EmergencyStop) -> None:
-        self._state["stop"] = {"active": message.active, "reason": message.reason}
-
-    def _on_description(self, message: String) -> None:
-        self._urdf = message.data
-        self._state["robot"] = True
-
-    def _on_feedback(self, action: str, message: Any) -> None:
-        feedback = message.feedback
-        goal = self._state["goals"].setdefault(action, {})
-        if isinstance(feedback, WalkTo.Feedback):
-            goal.update(
-                left=_rounded(feedback.distance_left)[0],
-                taken=feedback.steps_taken,
-                steps=feedback.steps_taken + feedback.steps_left,
-                replanning=feedback.replanning,
-            )
-        else:
-            goal.update(progress=_rounded(feedback.progress)[0], beat=feedback.beat)
-
-    def _on_status(self, action: str, message: GoalStatusArray) -> None:
-        if message.status_list:
-            newest = max(
-                message.status_list, key=lambda s: (s.goal_info.stamp.sec, s.goal_info.stamp.nanosec)
-            )
-            goal = self._state["goals"].setdefault(action, {})
-            goal["state"] = _STATES.get(newest.status, "unknown")
-
-    def _press(self, action: Callable[[], Any]) -> None:
-        """Queue a button's function: the server's threads call this, and the node runs it next."""
-        with self._guard:
-            self._pressed.append(action)
-
-    def _cancel_goals(self) -> None:
-        for client in self._cancel.values():
-            if client.service_is_ready():
-                client.call_async(CancelGoal.Request())  # neither an id nor a time: every goal
-
-    def _set_stop(self, active: bool) -> None:
-        if self._stop.service_is_ready():
-            self._stop.call_async(SetBool.Request(data=active))
+    def _subscribe(
+        self, topic: str, kind: type[Any], qos: QoSProfile, reading: Reading | None = None
+    ) -> None:
+        heard = self._heard[topic] = _Topic(reading)
+        heard.subscription = self.create_subscription(kind, topic, heard.hear, qos, raw=True)
 
     def _show(self) -> None:
-        with self._guard:
-            pressed, self._pressed = self._pressed, deque()
-        for action in pressed:
-            action()
-        self._state["speed"] = self._real_time.update(self._state.get("time", 0.0))
-        self.page.show(self._state)
+        """Show what has arrived since the last time."""
+        for topic in self._heard.values():
+            reading = topic.reading
+            if reading is None:
+                continue
+            for data in topic.take():
+                value = reading.read(deserialize_message(data, reading.kind))
+                if reading.channel == "log":
+                    self._log(*value)
+                else:
+                    self._note(reading.channel, value)
+                    self.page.show(reading.channel, value)
+        commands = self._commands
+        self.page.show("run", {"paused": commands.paused, "speed": commands.speed})
 
-    def _look(self) -> None:
-        """Check what is new in the graph, and measure the rates of all topics."""
+    def _note(self, channel: str, value: Any) -> None:
+        if channel == "time":
+            self._simulated = value
+        elif channel == "task":
+            self._commands.task = value["number"]
+
+    def _log(self, level: str, name: str, text: str) -> None:
+        self._line += 1
+        self._lines.append([self._line, level, name, text])
+        if level != "info":
+            self._warned[text.partition(": ")[0] + ": "] = text
+        self.page.show("log", list(self._lines))
+
+    def _why(self, beginning: str) -> str:
+        """The last warning that began like this, without its beginning; it is then forgotten."""
+        return self._warned.pop(beginning, "").removeprefix(beginning)
+
+    def _look(self, now: float) -> None:
+        """Check what is new in the graph, and measure the rates of all topics per simulated second."""
         for topic, types in self.get_topic_names_and_types():
-            # Images are drawn only for subscribers, and would cost more than everything else.
+            # Pictures would cost more than everything else.
             if topic in FRAMEWORK_TOPICS or hidden(topic) or len(types) != 1 or types[0] == _PICTURE:
                 continue
-            if topic not in self._counts:
-                self._types[topic] = types[0]
-                rate = self._counts[topic] = _Rate()
-                self.create_subscription(_message_class(types[0]), topic, rate.count, _LATEST, raw=True)
-        self._state["topics"] = [
-            [topic, self._types[topic], round(rate.per_second(), 1)]
-            for topic, rate in sorted(self._counts.items())
+            if topic not in self._heard and (kind := _message_class(types[0])) is not None:
+                self._subscribe(topic, kind, _LATEST)
+        (before, then), self._rated = self._rated, (now, self._simulated)
+        real, simulated = now - before, self._simulated - then
+        if real > 0 and simulated >= 0:
+            self.page.show("factor", round(simulated / real, 2))
+        graph = of_running(self)
+        kinds = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
+        rates = [
+            [name, kinds[name], round(self._heard[name].count() / simulated, 1) if simulated > 0 else 0.0]
+            for name in sorted(kinds)
+            if name in self._heard
         ]
-        self._drawing = svg(of_running(self))
+        self.page.show("topics", rates)
+        self.page.show("graph", _drawing(graph))
+
+    def _set_camera(self, on: bool) -> tuple[bool, str]:
+        """Show the pictures of the head camera, which take time to draw, or no more."""
+        if on and self._camera is None:
+            if not self.get_publishers_info_by_topic(_CAMERA):
+                return False, f"nobody publishes {_CAMERA}"
+            self._camera = self.create_subscription(Image, _CAMERA, self._on_picture, _LATEST)
+        elif not on and self._camera is not None:
+            self.destroy_subscription(self._camera)
+            self._camera = None
+            self.page.show("picture", 0)
+        else:
+            return True, ""
+        if self._stream.service_is_ready():  # a driver that streams only on demand
+            value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=on)
+            self._stream.call_async(
+                SetParameters.Request(parameters=[Parameter(name="streaming", value=value)])
+            )
+        return True, "the head camera is on" if on else "the head camera is off"
+
+    def _on_picture(self, message: Image) -> None:
+        if message.encoding != "rgb8" or not self.page.watchers:
+            return
+        size = (message.width, message.height)
+        picture = Pictures.frombytes("RGB", size, bytes(message.data), "raw", "RGB", message.step)
+        file = io.BytesIO()
+        picture.save(file, "JPEG", quality=80)
+        self._picture = file.getvalue()
+        self._pictures += 1
+        self.page.show("picture", self._pictures)
+
+    def _latest_picture(self) -> Document:
+        return ".jpg", self._picture
 
 
-class _Rate:
-    """Counts messages."""
+class _Topic:
+    """What was heard of a topic."""
 
-    def __init__(self) -> None:
+    def __init__(self, reading: Reading | None) -> None:
+        self.reading = reading
+        self.subscription: Any = None
         self._messages = 0
-        self._since = time.monotonic()
+        self._new: deque[bytes] = deque(maxlen=None if reading and reading.every else 1)
 
-    def count(self, _: bytes) -> None:
+    def hear(self, data: bytes) -> None:
+        """Count a message; only those that are shown will be read."""
         self._messages += 1
+        if self.reading is not None:
+            self._new.append(data)
 
-    def per_second(self) -> float:
-        """The rate since the last call, in messages per second of real time."""
-        now = time.monotonic()
-        rate = self._messages / max(now - self._since, 1e-6)
-        self._messages, self._since = 0, now
-        return rate
+    def take(self) -> list[bytes]:
+        """The messages since the last call: all, or only the newest."""
+        new = list(self._new)
+        self._new.clear()
+        return new
+
+    def count(self) -> int:
+        """The number of messages since the last call."""
+        counted, self._messages = self._messages, 0
+        return counted
 
 
-class _Speed:
-    """The speed of simulated time over the last two seconds."""
+def _answer(answered: Future[tuple[bool, str]], accepted: bool, text: str) -> None:
+    if not answered.done():
+        answered.set_result((accepted, text))
 
-    def __init__(self) -> None:
-        self._seen: deque[tuple[float, float]] = deque(maxlen=int(2 / _PERIOD))
 
-    def update(self, simulated: float) -> float:
-        """The real-time factor."""
-        self._seen.append((time.monotonic(), simulated))
-        (wall, then), (now, last) = self._seen[0], self._seen[-1]
-        return round((last - then) / (now - wall), 2) if now > wall else 0.0
+def _drawing(graph: Graph) -> dict[str, Any]:
+    """Nodes, and which of them talk to which over what."""
+    links: dict[tuple[str, str], list[str]] = {}
+    for connection in graph.connections:
+        for source in connection.sources:
+            for target in connection.targets:
+                links.setdefault((source.node, target.node), []).append(connection.name)
+    nodes = [name.lstrip("/") for name in graph.nodes]
+    return {
+        "nodes": nodes,
+        "links": [[a.lstrip("/"), b.lstrip("/"), names] for (a, b), names in links.items() if a != b],
+        "problems": list(graph.problems),
+    }
 
 
 def _message_class(type_name: str) -> Any:
+    """The class of a type, or None where its package is not installed."""
     package, folder, name = type_name.split("/")
-    return getattr(import_module(f"{package}.{folder}"), name)
-
-
-def _constant(message: Any, prefix: str, value: int) -> str:
-    names = (name for name in dir(message) if name.startswith(prefix) and getattr(message, name) == value)
-    return next(names, f"{prefix}{value}").removeprefix(prefix).replace("_", " ").lower()
-
-
-def _yaw(q: Any) -> float:
-    return math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
-
-
-def _rounded(*values: float) -> list[float]:
-    """Round to a tenth of a millimetre; JSON has no value for numbers that are not finite."""
-    return [round(value, 4) if math.isfinite(value) else 0.0 for value in values]
+    try:
+        return getattr(import_module(f"{package}.{folder}"), name)
+    except (ImportError, AttributeError):
+        return None

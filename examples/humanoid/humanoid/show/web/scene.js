@@ -1,0 +1,264 @@
+// The scene: the robot, the floor, and what is drawn on it. Lengths in metres, z up.
+import * as THREE from "three";
+import { OrbitControls } from "/three/OrbitControls.js";
+import { Robot } from "/robot.js";
+
+const LEFT = 1; // Footstep.leg
+const SOLE = [0.22, 0.11, 0.006];
+const SOLE_AHEAD = 0.02; // the middle of a sole in front of its ankle
+const FLOOR = 80; // a square about the robot
+const TILE = 0.5; // so that walking can be seen
+const TRAIL = 600; // points
+const TRAIL_STEP = 0.02;
+const OCCUPIED = 50; // percent
+
+const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+function chequers() {
+  const canvas = document.createElement("canvas");
+  canvas.width = canvas.height = 128;
+  const context = canvas.getContext("2d");
+  context.fillStyle = css("floor");
+  context.fillRect(0, 0, 128, 128);
+  context.fillStyle = css("floor-2");
+  context.fillRect(0, 0, 64, 64);
+  context.fillRect(64, 64, 64, 64);
+  const texture = new THREE.CanvasTexture(canvas);
+  texture.wrapS = texture.wrapT = THREE.RepeatWrapping;
+  texture.repeat.set(FLOOR / (2 * TILE), FLOOR / (2 * TILE));
+  texture.anisotropy = 8;
+  texture.colorSpace = THREE.SRGBColorSpace;
+  return texture;
+}
+
+const flat = (color, opacity = 1) =>
+  new THREE.MeshBasicMaterial({ color, transparent: opacity < 1, opacity, depthWrite: opacity === 1 });
+
+// An arrow on the floor from (0, 0) along x; its length is its scale.
+function arrow(color) {
+  const outline = new THREE.Shape();
+  outline.moveTo(0, 0.02).lineTo(0.86, 0.02).lineTo(0.82, 0.06).lineTo(1, 0);
+  outline.lineTo(0.82, -0.06).lineTo(0.86, -0.02).lineTo(0, -0.02);
+  return new THREE.Mesh(new THREE.ShapeGeometry(outline), flat(color, 0.9));
+}
+
+export class Scene {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+    this.renderer.shadowMap.enabled = true;
+    this.scene = new THREE.Scene();
+    this.scene.fog = new THREE.Fog(0xffffff, 7, 24);
+    this.camera = new THREE.PerspectiveCamera(38, 1, 0.05, 80);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.maxPolarAngle = Math.PI / 2 - 0.03;
+    this.controls.minDistance = 0.6;
+    this.controls.maxDistance = 14;
+    this.controls.addEventListener("change", () => (this.changed = true));
+    this.light();
+    this.marks();
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.paint());
+    this.paint();
+    this.resize();
+    this.look();
+    this.renderer.setAnimationLoop(() => this.render());
+  }
+
+  light() {
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9aa7b4, 1.7));
+    this.sun = new THREE.DirectionalLight(0xffffff, 2.0);
+    this.sun.position.set(1.5, -2.5, 4.5);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(1024, 1024);
+    Object.assign(this.sun.shadow.camera, { left: -1.6, right: 1.6, top: 1.6, bottom: -1.6, near: 1, far: 9 });
+    this.sun.shadow.normalBias = 0.02;
+    this.ground = new THREE.Mesh(new THREE.PlaneGeometry(FLOOR, FLOOR), new THREE.MeshLambertMaterial());
+    this.ground.receiveShadow = true;
+    this.scene.add(this.sun, this.sun.target, this.ground);
+  }
+
+  marks() {
+    const add = (object, height = 0) => {
+      object.position.z = height;
+      object.visible = false;
+      this.scene.add(object);
+      return object;
+    };
+    const ring = (inner, outer, color, opacity) => new THREE.Mesh(new THREE.RingGeometry(inner, outer, 40), flat(color, opacity));
+    this.footsteps = new THREE.Group();
+    this.obstacles = new THREE.Group();
+    this.scene.add(this.footsteps, this.obstacles);
+    this.goal = add(new THREE.Group(), 0.004);
+    this.goal.add(ring(0.13, 0.16, 0x1f6feb, 1));
+    const heading = arrow(0x1f6feb);
+    heading.scale.setScalar(0.34);
+    this.goal.add(heading);
+    this.hover = add(ring(0.1, 0.12, 0x1f6feb, 0.6), 0.004);
+    this.push = add(arrow(0xd6336c), 1.0);
+    this.push.material.depthTest = false;
+    this.capture = add(new THREE.Mesh(new THREE.CircleGeometry(0.022, 24), flat(0xd6336c)), 0.016);
+    this.zmp = add(new THREE.Mesh(new THREE.CircleGeometry(0.016, 24), flat(0x7048e8)), 0.018);
+    this.support = add(new THREE.Mesh(new THREE.BufferGeometry(), flat(0x1098ad, 0.35)), 0.014);
+    this.path = add(new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f6feb })), 0.006);
+    this.trail = add(new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x8a97a5 })), 0.003);
+    this.map = add(new THREE.Mesh(new THREE.PlaneGeometry(1, 1), flat(0xffffff, 0.5)), 0.002);
+    this.trailed = [];
+  }
+
+  paint() {
+    this.scene.background = new THREE.Color(css("page"));
+    this.scene.fog.color = this.scene.background;
+    this.ground.material.map?.dispose();
+    this.ground.material.map = chequers();
+    this.ground.material.needsUpdate = true;
+    this.colors = { left: css("left"), right: css("right") };
+    for (const [object, name] of [[this.capture, "capture"], [this.zmp, "zmp"], [this.support, "support"], [this.push, "capture"]]) {
+      object.material.color.set(css(name));
+    }
+    this.changed = true;
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.fov = width < height ? 50 : 38;
+    this.camera.updateProjectionMatrix();
+    this.changed = true;
+  }
+
+  // From the front quarter, with the feet and the way ahead in the picture.
+  look() {
+    this.controls.target.set(0.35, 0, 0.55);
+    this.camera.position.set(3.5, -2.5, 1.75);
+    this.controls.update();
+  }
+
+  load(urdf) {
+    if (this.robot) this.scene.remove(this.robot);
+    this.robot = new Robot(urdf);
+    this.scene.add(this.robot);
+    if (this.angles) this.robot.pose(this.angles);
+    if (this.base) this.robot.move(this.base);
+    this.changed = true;
+  }
+
+  pose(angles) {
+    this.angles = angles;
+    this.robot?.pose(angles);
+    this.changed = true;
+  }
+
+  // The camera moves with the robot and keeps the direction that the visitor chose.
+  move(base) {
+    const [x, y] = base;
+    const before = this.base ?? [0, 0];
+    const moved = new THREE.Vector3(x - before[0], y - before[1], 0);
+    this.base = base;
+    this.robot?.move(base);
+    for (const one of [this.camera.position, this.controls.target, this.sun.position, this.sun.target.position]) one.add(moved);
+    // The floor moves along by whole tiles, so that it seems to stand still.
+    this.ground.position.set(Math.round(x / (2 * TILE)) * 2 * TILE, Math.round(y / (2 * TILE)) * 2 * TILE, 0);
+    const jumped = moved.length() > 0.5;
+    if (jumped) this.trailed = [];
+    const last = this.trailed.at(-1);
+    if (!last || Math.hypot(x - last.x, y - last.y) > TRAIL_STEP) {
+      this.trailed = [...this.trailed.slice(1 - TRAIL), new THREE.Vector3(x, y, 0)];
+      this.draw(this.trail, this.trailed);
+    }
+    this.changed = true;
+  }
+
+  draw(line, points) {
+    line.geometry.dispose();
+    line.geometry = new THREE.BufferGeometry().setFromPoints(points);
+    line.visible = points.length > 1;
+    this.changed = true;
+  }
+
+  walk({ steps, goal }) {
+    this.goal.visible = Boolean(goal);
+    if (goal) {
+      this.goal.position.set(goal[0], goal[1], 0.004);
+      this.goal.rotation.z = goal[2];
+    }
+    for (const old of this.footsteps.children) {
+      old.geometry.dispose();
+      old.material.dispose();
+    }
+    this.footsteps.clear();
+    for (const [leg, x, y, z, yaw] of steps) {
+      const color = leg === LEFT ? this.colors.left : this.colors.right;
+      const mesh = new THREE.Mesh(new THREE.BoxGeometry(...SOLE), new THREE.MeshLambertMaterial({ color }));
+      mesh.position.set(x + SOLE_AHEAD * Math.cos(yaw), y + SOLE_AHEAD * Math.sin(yaw), z + SOLE[2] / 2);
+      mesh.rotation.z = yaw;
+      mesh.receiveShadow = true;
+      this.footsteps.add(mesh);
+    }
+    this.changed = true;
+  }
+
+  balance({ capture, zmp, support }) {
+    this.capture.position.set(...capture, 0.016);
+    this.zmp.position.set(...zmp, 0.018);
+    this.capture.visible = this.zmp.visible = true;
+    this.support.visible = support.length > 2;
+    if (this.support.visible) {
+      this.support.geometry.dispose();
+      this.support.geometry = new THREE.ShapeGeometry(new THREE.Shape(support.map(([x, y]) => new THREE.Vector2(x, y))));
+    }
+    this.changed = true;
+  }
+
+  way(points) {
+    this.draw(this.path, points.map(([x, y]) => new THREE.Vector3(x, y, 0)));
+  }
+
+  occupancy(map) {
+    this.map.visible = Boolean(map);
+    this.changed = true;
+    if (!map) return;
+    const { width, height, cell, origin, cells } = map;
+    const pixels = new Uint8Array(4 * width * height);
+    const color = new THREE.Color(css("danger"));
+    cells.forEach((value, index) => {
+      if (value >= OCCUPIED) pixels.set([255 * color.r, 255 * color.g, 255 * color.b, 255], 4 * index);
+    });
+    this.map.material.map?.dispose();
+    this.map.material.map = new THREE.DataTexture(pixels, width, height);
+    this.map.material.map.needsUpdate = this.map.material.needsUpdate = true;
+    this.map.scale.set(width * cell, height * cell, 1);
+    this.map.position.set(origin[0] + (width * cell) / 2, origin[1] + (height * cell) / 2, 0.002);
+  }
+
+  things(list) {
+    this.obstacles.clear();
+    for (const { shape, at, yaw, size, color } of list) {
+      const geometry =
+        shape === "box"
+          ? new THREE.BoxGeometry(...size)
+          : shape === "sphere"
+            ? new THREE.SphereGeometry(size[0] / 2, 24, 16)
+            : new THREE.CylinderGeometry(size[0] / 2, size[0] / 2, size[2], 32).rotateX(Math.PI / 2);
+      const material = new THREE.MeshLambertMaterial({ color: new THREE.Color().setRGB(...color, THREE.SRGBColorSpace) });
+      const mesh = new THREE.Mesh(geometry, material);
+      mesh.position.set(...at);
+      mesh.rotation.z = yaw;
+      mesh.castShadow = mesh.receiveShadow = true;
+      this.obstacles.add(mesh);
+    }
+    this.changed = true;
+  }
+
+  // Nothing is drawn while nothing changes.
+  render() {
+    this.controls.update();
+    if (!this.changed) return;
+    this.changed = false;
+    this.renderer.render(this.scene, this.camera);
+  }
+}
