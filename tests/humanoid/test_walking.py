@@ -111,7 +111,7 @@ def test_cancel_joins_the_feet(model: HumanoidModel) -> None:
 @pytest.mark.parametrize(
     ("direction", "momentum"),
     [(0, 4), (180, 4), (90, 4), (270, 4)]
-    + [pytest.param(angle, 12, marks=pytest.mark.slow) for angle in range(0, 360, 30)],
+    + [pytest.param(angle, 16, marks=pytest.mark.slow) for angle in range(0, 360, 30)],
 )
 def test_pushed_while_standing(model: HumanoidModel, direction: int, momentum: float) -> None:
     robot = Lockstep(model, seed=direction, noise=NOISE)
@@ -123,7 +123,7 @@ def test_pushed_while_standing(model: HumanoidModel, direction: int, momentum: f
 
 
 def _pushed(
-    model: HumanoidModel, steps: Sequence[Footstep], when: float, direction: float, momentum: float = 3.0
+    model: HumanoidModel, steps: Sequence[Footstep], when: float, direction: float, momentum: float = 6.0
 ) -> Lockstep:
     """Walk these steps with a push of the given impulse [N s] at the given time [s]."""
     robot = Lockstep(model, seed=1, noise=NOISE)
@@ -137,10 +137,10 @@ def _pushed(
 
 @pytest.mark.parametrize(
     ("when", "direction", "momentum"),
-    [(2.55, 90, 4), (2.7, 110, 4)]
-    + [pytest.param(*each, 3, marks=pytest.mark.slow) for each in [(2.9, 270), (3.3, 0), (3.4, 290)]]
+    [(2.55, 90, 6), (2.7, 110, 6)]
+    + [pytest.param(*each, 6, marks=pytest.mark.slow) for each in [(2.9, 270), (3.3, 0), (3.4, 290)]]
     + [
-        pytest.param(2.6 + 0.175 * phase, 45 * eighth, 3, marks=pytest.mark.slow)
+        pytest.param(2.6 + 0.175 * phase, 45 * eighth, 6, marks=pytest.mark.slow)
         for phase in range(8)
         for eighth in range(8)
     ],
@@ -168,7 +168,7 @@ def test_pushed_in_other_steps(
 def test_pushed_over_the_foot_that_stays_in_the_last_step(model: HumanoidModel) -> None:
     """The last step's foot lands, but the robot still falls: it takes two more, unplanned steps."""
     robot = _pushed(
-        model, (*STRAIGHT.steps[:3], replace(STRAIGHT.steps[3], x=STRAIGHT.steps[2].x)), 3.35, 270
+        model, (*STRAIGHT.steps[:3], replace(STRAIGHT.steps[3], x=STRAIGHT.steps[2].x)), 3.4, 270, 4.5
     )
     assert not robot.fell
     assert len(robot.touchdowns) > 4

@@ -28,7 +28,7 @@ from ..kinematics.legs import Legs
 from ..robot.model import PERIOD, HumanoidModel
 from ..robot.table import JOINT_NAMES, LEGS, UPPER_BODY
 from ..spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
-from . import balance
+from . import balance, effort
 from .fitting import fitted
 from .inputs import LATE, LEASE, Inputs, Leases
 from .posture import level, relaxed, standing
@@ -248,15 +248,14 @@ class WholeBodyController:
         self.error = dcm - (stepping.com + stepping.velocity / self._omega)
         stepping.keep_near(state.com[:2])
         stepping.adjust(self.error)
-        load = balance.distribute(
-            self._feedback.zmp(sample.zmp, self.error),
-            soles,
-            sample.swing.leg.other.side if sample.swing else None,
-            self.model.sole,
-            parameters,
-        )
+        stance = sample.swing.leg.other.side if sample.swing else None
         height = parameters.com_height - self._squat
-        torque = balance.torques(state, load, self._omega, height)
+        zmp = self._feedback.zmp(sample.zmp, self.error)
+        load = balance.distribute(zmp, soles, stance, self.model.sole, parameters)
+        force = effort.wanted_force(state, load.zmp, self._omega, height)
+        motion = effort.Motion(state, force, stepping.accelerations())
+        load = balance.distribute(motion.pressure_point(force), soles, stance, self.model.sole, parameters)
+        torque = motion.torques(force, load)
         way = _JOINT_SPEED * self._elapsed
         joints = np.clip(self._inverse_kinematics(sample, height), self._joints - way, self._joints + way)
         velocity = (joints - self._joints) / self._elapsed

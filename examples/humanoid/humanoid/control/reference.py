@@ -26,8 +26,8 @@ PREVIEW = 4  # steps that the reference looks ahead: later ones weigh exp(-w t) 
 class GaitParameters:
     """Parameters of a walk. Times in seconds, lengths in metres; gains have no unit unless one is named.
 
-    The first three follow from the speed: see `at_pace`. Lengths are those of our robot; `fitting.fitted` makes
-    them those of another.
+    The first three follow from the speed: see `at_pace`. Lengths are those of our robot; `fitting.fitted`
+    makes them those of another.
     """
 
     com_height: float = Pace().com_height

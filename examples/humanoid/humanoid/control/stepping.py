@@ -192,6 +192,16 @@ class Stepping:
             )
         return poses
 
+    def accelerations(self) -> list[Array]:
+        """Accelerations (6,) of both soles at this tick, linear then angular."""
+        found = [np.zeros(6), np.zeros(6)]
+        if (moving := self.sample.swing) is not None:
+            side, sample = moving.leg.side, self.sample
+            found[side] = swing.acceleration(
+                self.feet[side], self.landing, sample.phase, sample.time_left, self._parameters.lift
+            )
+        return found
+
     def touchdown(self, measured: Sequence[Array]) -> None:
         """End the swing: continue from where the soles (planar poses) really are."""
         done = self.steps.pop(0)
