@@ -12,6 +12,9 @@ BOTH_CODECS := $(addprefix tests/,$(addprefix codec/test_,$(addsuffix .py,hostil
 # The packages that nodes import besides rclpy.
 LIBRARIES := $(patsubst codegen/libraries/%/__init__.py,%,$(wildcard codegen/libraries/*/__init__.py))
 CASES := 1000000
+# Whether pictures can be drawn here: the demo does without them where there is no OpenGL.
+CAN_DRAW = PYTHONPATH=examples/humanoid $(BIN)/python -c \
+	'from humanoid.simulation.rendering import check; check()' 2>/dev/null
 EMPTY :=
 # The folders of generated packages of nodes, with colons between them.
 NODES := $(subst $(EMPTY) $(EMPTY),:,$(patsubst %/setup.py,%,$(wildcard generated/*/setup.py)))
@@ -29,7 +32,9 @@ help:  ## list these targets
 demo: $(VENV)/.run  ## see ifgen work on real interfaces, and a humanoid that walks with them
 	@$(BIN)/python examples/first_steps.py
 	@echo
-	@$(BIN)/ifgen demo
+	@$(BIN)/ifgen demo --scenario walk $$($(CAN_DRAW) && echo --record $(VENV)/humanoid.png)
+	@echo
+	@echo "To play with the robot in the browser: $(BIN)/ifgen demo --web"
 
 test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as well)
 	$(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone"

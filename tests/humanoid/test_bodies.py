@@ -11,14 +11,18 @@ from humanoid.control.fitting import fitted
 from humanoid.control.posture import start
 from humanoid.control.reference import GaitParameters
 from humanoid.kinematics.dynamics import RobotState
+from humanoid.kinematics.head import HeadMode, HeadPose
+from humanoid.kinematics.ik import IkRequest, IkStatus, InverseKinematics
 from humanoid.kinematics.legs import Legs
+from humanoid.robot import table
 from humanoid.robot.body import OURS
 from humanoid.robot.external import load_external
+from humanoid.robot.joint_map import ModelError
 from humanoid.robot.model import HumanoidModel
 from humanoid.simulation.sim import Noise
 from humanoid.trials.harness import Lockstep
 
-from .bodies import shorter_legs
+from .bodies import offset_hips, shorter_legs
 
 
 def loaded(folder: Path, text: str) -> HumanoidModel:
@@ -26,6 +30,29 @@ def loaded(folder: Path, text: str) -> HumanoidModel:
     path = folder / "robot.xml"
     path.write_text(text)
     return load_external(path)
+
+
+FOOT = '<geom type="box" size="0.11 0.055 0.0175"'
+REFUSED = [
+    ({' 0.0 -0.3"': ' 0.0 -0.05"', '-0.0 -0.3"': '-0.0 -0.05"'}, "the leg of joint 'l_knee' is 0.16 m long from hip to sole; walking takes 0.35 m"),
+    ({'name="l_shin" pos="0.0 0.0 -0.3"': 'name="l_shin" pos="0.0 0.0 -0.27"'}, "the leg of joint 'l_knee' is 0.630 m long and that of 'r_knee' 0.660 m: the robot walks on equal legs"),
+    ({"-150.0 150.0": "-40.0 40.0", "-150 150": "-40 40"}, "joint 'l_knee' has 40 N m; carrying 35 kg on one leg takes 45 N m there"),
+    ({FOOT: FOOT + ' contype="0" conaffinity="0"'}, "body 'l_ankle', a foot, has no geom that touches the floor"),
+    ({FOOT: FOOT.replace("0.11 ", "0.05 ")}, "the sole of 'l_ankle' is 0.100 m long and 0.110 m wide; walking takes 0.12 by 0.05 m"),
+    ({'<freejoint name="floating_base" />': ""}, "body 'base_link' has no free joint, so the robot cannot move"),
+    ({'name="waist_yaw" axis="0.0 0.0 1.0"': 'name="waist_yaw" type="ball"'}, "joint 'waist_yaw' is not a hinge"),
+    ({'"l_hip_yaw_link" pos="0.0 0.09': '"l_hip_yaw_link" pos="0.0 0.05', '"r_hip_yaw_link" pos="0.0 -0.09': '"r_hip_yaw_link" pos="0.0 -0.05'}, "the soles are 0.10 m apart with all joints at zero; the robot walks with 0.12 to 0.36 m"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("changes", "words"), REFUSED, ids=[words for _, words in REFUSED])
+def test_what_cannot_walk_is_refused(tmp_path: Path, changes: dict[str, str], words: str) -> None:
+    text = shorter_legs(0.0)
+    for old, new in changes.items():
+        text = text.replace(old, new)
+    with pytest.raises(ModelError) as caught:
+        loaded(tmp_path, text)
+    assert str(caught.value) == f"{tmp_path}/robot.xml: {words}"
 
 
 def test_our_own_body_is_what_the_table_says(model: HumanoidModel, tmp_path: Path) -> None:
@@ -75,5 +102,37 @@ def test_walks_on_shorter_legs(tmp_path: Path, share: float) -> None:
     robot = Lockstep(loaded(tmp_path, shorter_legs(share)), seed=1, noise=Noise())
     robot.run(0.5)
     assert robot.go_to((1.0, 0.0, 0.0)) < 0.03
+    assert not robot.fell
+    assert robot.foot_error()[0] <= 0.020
+
+
+def test_offset_hips_other_arms_and_no_neck(tmp_path: Path) -> None:
+    model = loaded(tmp_path, offset_hips())
+    assert not model.has_our_legs
+    assert model.body.upper_body[3:10] == tuple(f"l_{name}" for name in (*table.ARM_JOINTS, "wrist_yaw"))
+    assert "head_yaw" not in model.body.joints
+    joints, base = start(model)
+    state = RobotState(model)
+    state.set_posture(base, np.array([0.0, 0.0, 0.0, 1.0]), joints)
+    for side in (0, 1):
+        place, turn = state.sole(side)
+        assert np.abs(turn - np.eye(3)).max() < 1e-5
+        assert abs(place[2]) < 1e-5
+    answer = HeadPose(model).check(HeadMode.LOOK_AT, np.array([1.0, 0.0, 0.5]), np.array([0, 0, 0, 1.0]))
+    assert answer.message == "the robot has no neck: neither head_yaw nor head_pitch"
+    reached = InverseKinematics(model).solve(
+        IkRequest("left_arm", np.array([0.2, 0.25, 0.3]), np.zeros(4), position_only=True)
+    )
+    assert reached.status is IkStatus.SOLVED
+    assert len(reached.positions) == 7
+    refused = InverseKinematics(model).solve(IkRequest("head", np.zeros(3), np.array([0, 0, 0, 1.0])))
+    assert refused.message == "the robot has no head: none of its joints is in the model"
+
+
+@pytest.mark.slow
+def test_walks_on_offset_hips(tmp_path: Path) -> None:
+    robot = Lockstep(loaded(tmp_path, offset_hips()), seed=1, noise=Noise())
+    robot.run(0.5)
+    assert robot.go_to((1.0, 0.3, 0.5)) < 0.04
     assert not robot.fell
     assert robot.foot_error()[0] <= 0.020

@@ -125,9 +125,10 @@ def test_a_wrong_map_names_the_entry(tmp_path: Path, joint_map: object, text: st
     assert _error(tmp_path, _bare(), joint_map) == text
 
 
+WAIST = 'name="waist_yaw_joint" axis="0.0 0.0 1.0"'
 KNEE = 'name="left_knee_joint" axis="0.0 1.0 0.0"'
 WRONG_MODELS = [
-    ({KNEE: 'name="left_knee_joint" axis="0.0 -1.0 0.0"'}, "joint 'left_knee_joint' turns about (0, -1, 0) with all joints at zero; 'l_knee' turns about (0, 1, 0)"),
+    ({WAIST: 'name="waist_yaw_joint" axis="0.0 0.0 -1.0"'}, "joint 'waist_yaw_joint' turns about (0, 0, -1) with all joints at zero; 'waist_yaw' turns about (0, 0, 1)"),
     ({KNEE: KNEE + ' type="slide"'}, "joint 'left_knee_joint' is not a hinge"),
     ({KNEE: KNEE + ' type="hing"'}, "XML Error: invalid keyword: 'hing'; Element 'joint', line "),
     ({'<body name="l_thigh"': '<bdy name="l_thigh"'}, "XML parse error 14"),
@@ -177,10 +178,10 @@ STRANGE_FILES: list[tuple[str | bytes, str]] = [
     (OURS.replace(WORLD, f"<include file='robot.xml' />{WORLD}", 1), "'robot.xml' already included"),
     (OURS.replace(L_KNEE[0], ""), "no joint 'l_knee' for 'l_knee'; did you mean 'r_knee'?"),
     (OURS.replace('name="l_knee"', 'name="l_knee" type="ball"', 1), "joint 'l_knee' is not a hinge"),
-    (re.sub(r'(name="l_knee"[^>]*range=")[^"]*', r"\1nan nan", OURS), "joint 'l_knee' for 'l_knee' has "),
+    (re.sub(r'(name="l_knee"[^>]*range=")[^"]*', r"\1nan nan", OURS), "joint 'l_knee' has "),
     (
         re.sub(r'(name="l_knee"[^>]*range=")[^"]*', r"\g<1>1 -1", OURS),
-        "joint 'l_knee' for 'l_knee' has no range, or an empty one",
+        "joint 'l_knee' has no range, or an empty one",
     ),
     (
         OURS.replace("<freejoint", '<freejoint name="second" /><freejoint', 1),

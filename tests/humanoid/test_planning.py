@@ -22,6 +22,7 @@ from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome
 from humanoid.planning.task_manager import TaskManager
 from humanoid.planning.tasks import Task, task_of, words_of
 from humanoid.planning.teleop import Teleop, VelocityLimits
+from humanoid.robot.body import OURS
 from humanoid.robot.ground import Ground, Obstacle
 from humanoid.robot.model import HumanoidModel
 from humanoid.robot.table import JOINT_NAMES, UPPER_BODY
@@ -197,8 +198,8 @@ def test_a_cancelled_dance_goes_back_to_standing(model: HumanoidModel) -> None:
 def test_dances_are_within_the_joints_limits(model: HumanoidModel) -> None:
     for choreography in DANCES.values():
         for beat in choreography.beats:
-            assert (beat.joints >= model.lower[UPPER_BODY]).all()
-            assert (beat.joints <= model.upper[UPPER_BODY]).all()
+            assert (beat.joints(OURS) >= model.lower[UPPER_BODY]).all()
+            assert (beat.joints(OURS) <= model.upper[UPPER_BODY]).all()
             assert set(beat.pose) <= set(JOINT_NAMES[UPPER_BODY])
 
 

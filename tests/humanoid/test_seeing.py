@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from humanoid.control.posture import standing
 from humanoid.control.reference import GaitParameters
-from humanoid.data import Footstep, Leg
 from humanoid.robot import scene, table
 from humanoid.robot.model import HumanoidModel
 from humanoid.sensing.face_detection import detect
@@ -157,34 +156,6 @@ def _flood(mask: np.ndarray) -> int:
                     left.remove(near)
                     edge.append(near)
     return pieces
-
-
-def test_pictures_show_robot_and_footsteps(model: HumanoidModel, tmp_path: Path) -> None:
-    from PIL import Image
-
-    simulator = _look(model, (0.0, 0.0), 0.0)
-    camera = rendering.FollowCamera(model, 320, 240)
-    plain = camera.picture(simulator)
-    steps = [Footstep(0, Leg.RIGHT, 0.3, -0.09, 0.0), Footstep(1, Leg.LEFT, 0.5, 0.09, 0.0)]
-    marked = camera.picture(simulator, steps)
-    simulator.data.qpos[0] += 3.0
-    mujoco.mj_forward(model.mj, simulator.data)
-    moved = camera.picture(simulator)
-    camera.close()
-    assert plain.shape == (240, 320, 3)
-    red, green, blue = (marked[..., channel].astype(int) for channel in range(3))
-    assert ((green > red + 40) & (green > blue + 40)).sum() > 30
-    assert ((red > green + 40) & (red > blue + 80)).sum() > 30
-    middle = (slice(60, 160), slice(135, 185))
-    assert np.abs(moved[middle].astype(int) - plain[middle]).mean() < 25  # it has moved with the robot
-    rendering.save_png(marked, tmp_path / "one.png")
-    rendering.save_gif([plain, marked, moved], tmp_path / "some.gif")
-    with Image.open(tmp_path / "one.png") as image:
-        assert np.array_equal(np.asarray(image), marked)
-    with Image.open(tmp_path / "some.gif") as image:
-        assert (getattr(image, "n_frames", 1), image.size) == (3, (320, 240))
-    with pytest.raises(rendering.RenderingError):
-        rendering.save_gif([], tmp_path / "none.gif")
 
 
 _WITHOUT = """

@@ -1,7 +1,8 @@
 """The data that nodes exchange: plain classes, each carried by a message of the same meaning.
 
-Times are integer nanoseconds of simulated time. Arrays over joints are in the order of `robot.JOINT_NAMES`
-(29,). Quaternions are (x, y, z, w). Planar poses are (x, y, yaw) on the floor. World means the frame odom.
+Times are integer nanoseconds of simulated time. Arrays over joints are in the order of the robot's
+`Body.joints`, for ours 29. Quaternions are (x, y, z, w). Planar poses are (x, y, yaw) on the floor. World
+means the frame odom.
 """
 
 from __future__ import annotations
@@ -75,7 +76,7 @@ class Cause(IntEnum):
 
 @dataclass(slots=True)
 class JointStates:
-    """sensor_msgs/JointState: positions in rad, velocities in rad/s, efforts in N m, each (29,)."""
+    """sensor_msgs/JointState: positions in rad, velocities in rad/s, efforts in N m, each (joints,)."""
 
     stamp: int
     position: Array
@@ -126,7 +127,7 @@ class Odometry:
 
 @dataclass(slots=True)
 class JointCommand:
-    """std_msgs/Float64MultiArray for the servos: set-points in rad (29,), and the tick they answer."""
+    """std_msgs/Float64MultiArray for the servos: set-points in rad (joints,), and the tick they answer."""
 
     stamp: int
     position: Array
@@ -135,7 +136,7 @@ class JointCommand:
 
 @dataclass(slots=True)
 class Posture:
-    """Set-points of waist, head and arms (17,) in rad, as JOINT_NAMES[12:], and a lower pelvis."""
+    """Set-points of waist, head and arms in rad, as `Body.upper_body`, and a lower pelvis."""
 
     position: Array
     squat: float = 0.0  # distance by which the pelvis is lowered, metres
@@ -181,6 +182,17 @@ class Stance:
         left, right = self.feet
         yaw = left[2] + 0.5 * float(np.arctan2(np.sin(right[2] - left[2]), np.cos(right[2] - left[2])))
         return np.array([(left[0] + right[0]) / 2, (left[1] + right[1]) / 2, yaw])
+
+
+@dataclass(frozen=True, slots=True)
+class BalanceState:
+    """BalanceState.msg: how the robot keeps its balance, in odom, metres."""
+
+    stamp: int
+    centre_of_mass: Array  # (3,)
+    capture_point: Array  # (2,)
+    zero_moment_point: Array  # (2,)
+    support: Array  # (n, 2)
 
 
 @dataclass(slots=True)

@@ -14,7 +14,7 @@ from std_msgs.msg import Empty
 from std_srvs.srv import SetBool
 
 from camera_driver._camera_driver_base import CameraDriverBase
-from camera_driver._camera_driver_parameters import ParametersError
+from camera_driver._camera_driver_parameters import CameraDriverParameters, ParametersError
 
 _LOST = "the sensor has not delivered a picture since the last trigger"
 
@@ -32,6 +32,10 @@ class CameraDriver(CameraDriverBase):
         """Begin anew: what was triggered before nobody waits for."""
         self._waits = False
         return super().on_activate(state)
+
+    def on_parameters_changed(self, parameters: CameraDriverParameters) -> None:
+        """Start or stop capturing."""
+        self._streaming = parameters.streaming
 
     def handle_set_streaming(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         """Start or stop capturing."""

@@ -32,7 +32,7 @@ class DanceActionServer(DanceActionServerBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._body = load_body(self.parameters.model_file, self.parameters.joint_map)
-        self._joints = LatestJoints(self)
+        self._joints = LatestJoints(self, self._body)
         self._gait: data.GaitState | None = None
         self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)
@@ -55,7 +55,7 @@ class DanceActionServer(DanceActionServerBase):
         """Accept a known dance while the robot stands and does not dance; the log says why others are not."""
         if self._stop.active or (self._gait is not None and self._gait.mode is not data.Mode.STANDING):
             await self._news.next()
-        why_not = problem(goal.dance, goal.tempo, self.parameters.dances)
+        why_not = problem(goal.dance, goal.tempo, self.parameters.dances, self._body)
         preempts = self._performance is not None and self.parameters.second_goal == "preempt"
         if self._performance is not None and not preempts:
             why_not = "I am dancing already, and second_goal says reject"
@@ -117,7 +117,7 @@ class DanceActionServer(DanceActionServerBase):
         if performance.handle.is_cancel_requested or performance.preempted:
             performance.dance.cancel()
         tick = performance.dance.update(gait.stamp, joints, gait)
-        self.publish_posture(messages.posture(tick.posture, gait.stamp))
+        self.publish_posture(messages.posture(tick.posture, gait.stamp, self._body))
         if tick.plan is not None:
             self.publish_footsteps_plan(messages.footstep_plan(tick.plan, gait.stamp))
         performance.beats += 1

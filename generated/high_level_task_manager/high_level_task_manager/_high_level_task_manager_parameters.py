@@ -140,7 +140,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "greet_faces",
             Parameter.Type.BOOL,
-            True,
+            False,
             ParameterDescriptor(
                 description="Whether the robot greets a face that appears with a dance",
             ),

@@ -841,8 +841,8 @@ PARAMETERS = [
     ParameterCase(
         "greet_faces",
         Parameter.Type.BOOL,
-        True,
-        [True, False],
+        False,
+        [False, True],
         [],
         description="Whether the robot greets a face that appears with a dance",
     ),

@@ -9,6 +9,7 @@ from ifgen_runtime.lazy import lazy_exports
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this package
 if TYPE_CHECKING:
+    from humanoid_interfaces.msg._balance_state import BalanceState as BalanceState
     from humanoid_interfaces.msg._battery_status import BatteryStatus as BatteryStatus
     from humanoid_interfaces.msg._detected_object import DetectedObject as DetectedObject
     from humanoid_interfaces.msg._detected_object_array import DetectedObjectArray as DetectedObjectArray
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from humanoid_interfaces.msg._task_status import TaskStatus as TaskStatus
 
 __all__ = [
+    "BalanceState",
     "BatteryStatus",
     "DetectedObject",
     "DetectedObjectArray",
@@ -38,6 +40,7 @@ __all__ = [
 __getattr__, __dir__ = lazy_exports(
     __name__,
     {
+        "BalanceState": "_balance_state",
         "BatteryStatus": "_battery_status",
         "DetectedObject": "_detected_object",
         "DetectedObjectArray": "_detected_object_array",

@@ -188,6 +188,16 @@ humanoid_interfaces_action_WalkTo_Feedback = st.builds(
     steps_taken=UINT32S,
     steps_left=UINT32S,
 )
+geometry_msgs_msg_Point32 = st.builds(geometry_msgs.msg.Point32, x=FLOAT32S, y=FLOAT32S, z=FLOAT32S)
+geometry_msgs_msg_Polygon = st.builds(geometry_msgs.msg.Polygon, points=some(geometry_msgs_msg_Point32))
+humanoid_interfaces_msg_BalanceState = st.builds(
+    humanoid_interfaces.msg.BalanceState,
+    header=std_msgs_msg_Header,
+    centre_of_mass=geometry_msgs_msg_Point,
+    capture_point=geometry_msgs_msg_Point,
+    zero_moment_point=geometry_msgs_msg_Point,
+    support=geometry_msgs_msg_Polygon,
+)
 humanoid_interfaces_msg_BatteryStatus = st.builds(
     humanoid_interfaces.msg.BatteryStatus,
     header=std_msgs_msg_Header,
@@ -490,6 +500,24 @@ CASES = [
             "steps_left": [-1, 4294967296, "0"],
         },
         nan={"distance_left": NAN},
+    ),
+    Case(
+        humanoid_interfaces.msg.BalanceState,
+        humanoid_interfaces_msg_BalanceState,
+        fields={
+            "header": "std_msgs/Header",
+            "centre_of_mass": "geometry_msgs/Point",
+            "capture_point": "geometry_msgs/Point",
+            "zero_moment_point": "geometry_msgs/Point",
+            "support": "geometry_msgs/Polygon",
+        },
+        refused={
+            "header": [None],
+            "centre_of_mass": [None],
+            "capture_point": [None],
+            "zero_moment_point": [None],
+            "support": [None],
+        },
     ),
     Case(
         humanoid_interfaces.msg.BatteryStatus,

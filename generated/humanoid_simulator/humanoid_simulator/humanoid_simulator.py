@@ -85,7 +85,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
     def on_joint_commands(self, message: JointState) -> None:
         """Give the servos new set-points; in lockstep, time waits for them."""
         try:
-            command = messages.read_joint_commands(message, table.JOINT_NAMES)
+            command = messages.read_joint_commands(message, self._model.body.joints)
         except ValueError as error:
             self._health.takes("set-points", f"/joint_commands: {error}")
             return
@@ -220,7 +220,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         sensors = self._sensors = self._sensors or self.simulator.sensors()
         self._answered = False
         self._sent = time.monotonic()
-        self.publish_joint_encoders(messages.joint_states(sensors.joints))
+        self.publish_joint_encoders(messages.joint_states(sensors.joints, self._model.body.joints))
         self.publish_imu_data(messages.imu(sensors.imu))
         self.publish_l_foot_wrench(messages.wrench(sensors.wrenches[0], "l_ankle"))
         self.publish_r_foot_wrench(messages.wrench(sensors.wrenches[1], "r_ankle"))

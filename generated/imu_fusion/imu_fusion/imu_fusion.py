@@ -49,7 +49,7 @@ class ImuFusion(ImuFusionBase):
     def on_joint_states(self, message: JointState) -> None:
         """Take angles and velocities."""
         try:
-            joints = messages.read_joint_states(message)
+            joints = messages.read_joint_states(message, self._model.body)
         except ValueError as error:
             self._health.takes("readings", f"/joint_states: {error}")
             return

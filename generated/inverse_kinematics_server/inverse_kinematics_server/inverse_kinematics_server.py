@@ -32,10 +32,11 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         humanoid = load_model(self.parameters.model_file, self.parameters.joint_map)
+        self._body = humanoid.body
         self._solver = InverseKinematics(humanoid)
         self._head = HeadPose(humanoid)
         self._legs = RobotState(humanoid)
-        self._joints = LatestJoints(self)
+        self._joints = LatestJoints(self, self._body)
 
     def on_joint_states(self, message: JointState) -> None:
         """Take the joint positions, for requests without a seed."""

@@ -10,7 +10,6 @@ from geometry_msgs.msg import WrenchStamped
 from humanoid import data
 from humanoid.control.plausible import imu_problem, joints_problem, wrench_problem
 from humanoid.control.standby import Standby
-from humanoid.robot import table
 from humanoid.robot.external import load_model
 from humanoid.ros import messages
 from humanoid.ros.diagnostics import Health
@@ -39,7 +38,7 @@ class JointController(JointControllerBase):
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Load the model, and create all entities."""
         model = self._model = load_model(self.parameters.model_file, self.parameters.joint_map)
-        self._names = list(table.JOINT_NAMES)
+        self._names = list(model.body.joints)
         self._gate = CommandGate(model.lower, model.upper)
         self._standby = Standby(model)
         self._health = Health("joint_controller: commands", self.get_logger(), "readings")

@@ -15,7 +15,7 @@ pytest.importorskip("mujoco", reason="the controller needs MuJoCo")
 
 from humanoid.ros import messages
 from humanoid.trials.harness import Lockstep
-from humanoid_interfaces.msg import GaitState
+from humanoid_interfaces.msg import BalanceState, GaitState
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import Imu, JointState
 from std_msgs.msg import Float64MultiArray
@@ -28,6 +28,7 @@ def test_it_answers_the_readings_of_a_moment_with_set_points(ros: Any) -> None:
     ros.start(WholeBodyController)
     commands: list[Float64MultiArray] = []
     states: list[GaitState] = []
+    balances: list[BalanceState] = []
     peer = ros.peer
     peer.create_subscription(
         Float64MultiArray,
@@ -36,6 +37,9 @@ def test_it_answers_the_readings_of_a_moment_with_set_points(ros: Any) -> None:
         base.WHOLE_BODY_POSITION_CONTROLLER_COMMANDS_PUBLISHER_QOS,
     )
     peer.create_subscription(GaitState, "/gait_state", states.append, base.GAIT_STATE_PUBLISHER_QOS)
+    peer.create_subscription(
+        BalanceState, "/whole_body_controller/balance", balances.append, base.BALANCE_PUBLISHER_QOS
+    )
     joints = peer.create_publisher(JointState, "/joint_states", base.JOINT_STATES_SUBSCRIPTION_QOS)
     imu = peer.create_publisher(Imu, "/imu/data", base.IMU_DATA_SUBSCRIPTION_QOS)
     odometry = peer.create_publisher(Odometry, "/odom", base.ODOM_SUBSCRIPTION_QOS)
@@ -46,9 +50,11 @@ def test_it_answers_the_readings_of_a_moment_with_set_points(ros: Any) -> None:
         imu.publish(messages.imu(readings.imu))
         odometry.publish(messages.odometry(truth))
 
-    ros.deliver(moment, lambda: commands and states, "set-points and gait state")
+    ros.deliver(moment, lambda: commands and states and balances, "set-points, gait state and balance")
     command = messages.read_command(commands[0], -1)
     assert (command.stamp, command.answers) == (0, True)
     assert max(abs(command.position - readings.joints.position)) < 0.3  # it stands where it stands
     assert states[0].mode in {GaitState.MODE_STANDING, GaitState.MODE_STOPPING}
     assert states[0].reason == ""
+    assert len(balances[0].support.points) == 4  # both soles
+    assert abs(balances[0].capture_point.y) < 0.01

@@ -241,6 +241,16 @@ humanoid_interfaces_msg_GaitState = st.builds(
     footstep_index=UINT32S,
     phase=FLOAT32S,
 )
+geometry_msgs_msg_Point32 = st.builds(geometry_msgs.msg.Point32, x=FLOAT32S, y=FLOAT32S, z=FLOAT32S)
+geometry_msgs_msg_Polygon = st.builds(geometry_msgs.msg.Polygon, points=some(geometry_msgs_msg_Point32))
+humanoid_interfaces_msg_BalanceState = st.builds(
+    humanoid_interfaces.msg.BalanceState,
+    header=std_msgs_msg_Header,
+    centre_of_mass=geometry_msgs_msg_Point,
+    capture_point=geometry_msgs_msg_Point,
+    zero_moment_point=geometry_msgs_msg_Point,
+    support=geometry_msgs_msg_Polygon,
+)
 diagnostic_msgs_msg_KeyValue = st.builds(diagnostic_msgs.msg.KeyValue, key=STRINGS, value=STRINGS)
 diagnostic_msgs_msg_DiagnosticStatus = st.builds(
     diagnostic_msgs.msg.DiagnosticStatus,
@@ -362,6 +372,15 @@ PUBLISHERS = [
         "publish_gait_state",
         "gait_state_publisher",
         humanoid_interfaces_msg_GaitState,
+    ),
+    Topic(
+        "~/balance",
+        "humanoid_interfaces/msg/BalanceState",
+        humanoid_interfaces.msg.BalanceState,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
+        "publish_balance",
+        "balance_publisher",
+        humanoid_interfaces_msg_BalanceState,
     ),
     Topic(
         "/diagnostics",

@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
-from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
+from humanoid_interfaces.msg import BalanceState, EmergencyStop, FootstepPlan, GaitState
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -37,6 +37,11 @@ GAIT_STATE_PUBLISHER_QOS = QoSProfile(
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
+BALANCE_PUBLISHER_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.BEST_EFFORT,
 )
 DIAGNOSTICS_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -104,6 +109,11 @@ class WholeBodyControllerBase(Node, ABC):
 
     `/gait_state`, humanoid_interfaces/msg/GaitState.
     """
+    balance_publisher: Publisher[BalanceState]
+    """Capture point, zero-moment point and support polygon, 25 times a second while anybody subscribes
+
+    `~/balance`, humanoid_interfaces/msg/BalanceState.
+    """
     diagnostics_publisher: Publisher[DiagnosticArray]
     """How many readings, plans and postures were refused, and why the last one was
 
@@ -169,6 +179,11 @@ class WholeBodyControllerBase(Node, ABC):
             GaitState,
             "/gait_state",
             GAIT_STATE_PUBLISHER_QOS,
+        )
+        self.balance_publisher = self.create_publisher(
+            BalanceState,
+            "~/balance",
+            BALANCE_PUBLISHER_QOS,
         )
         self.diagnostics_publisher = self.create_publisher(
             DiagnosticArray,
@@ -246,6 +261,13 @@ class WholeBodyControllerBase(Node, ABC):
         What the robot is doing, where its feet are, and why it has stopped if it has
         """
         self.gait_state_publisher.publish(message)
+
+    def publish_balance(self, message: BalanceState) -> None:
+        """Publish on `~/balance`.
+
+        Capture point, zero-moment point and support polygon, 25 times a second while anybody subscribes
+        """
+        self.balance_publisher.publish(message)
 
     def publish_diagnostics(self, message: DiagnosticArray) -> None:
         """Publish on `/diagnostics`.

@@ -12,6 +12,7 @@ from humanoid.control.plausible import imu_problem, joints_problem
 from humanoid.control.reference import GaitParameters
 from humanoid.robot.external import load_model
 from humanoid.ros import messages
+from humanoid.ros.balance import balance_state
 from humanoid.ros.diagnostics import Health
 from humanoid.ros.recent import Recent, newest_of_all, rewound
 from humanoid.ros.running import run
@@ -26,6 +27,7 @@ from whole_body_controller._whole_body_controller_base import WholeBodyControlle
 from whole_body_controller._whole_body_controller_parameters import ParametersError
 
 _STATE_PERIOD = 20_000_000  # ns between gait states while nothing in them changes but numbers
+_BALANCE_PERIOD = 40_000_000  # ns between messages about the balance, while somebody wants them
 _LATE = 3  # readings, or control periods, after which the controller uses what it has
 _POSTURE_LEASE = 500_000_000  # ns that a posture is valid: a dance sends one 50 times a second
 _STOPPED = "somebody called ~/stop"
@@ -65,11 +67,12 @@ class WholeBodyController(WholeBodyControllerBase):
         self._mode: data.Mode | None = None
         self._said: tuple[object, ...] = ()  # what other nodes use of the last gait state
         self._told = 0  # when
+        self._shown = -_BALANCE_PERIOD  # when the balance was last told, or nobody wanted to know
 
     def on_joint_states(self, message: JointState) -> None:
         """Take angles and velocities."""
         try:
-            joints = messages.read_joint_states(message)
+            joints = messages.read_joint_states(message, self._controller.model.body)
         except ValueError as error:
             self._health.takes("readings", f"/joint_states: {error}")
             return
@@ -106,7 +109,7 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_posture(self, message: JointState) -> None:
         """Bring the upper body to a posture."""
         try:
-            posture = messages.read_posture(message)
+            posture = messages.read_posture(message, self._controller.model.body)
             why_not = self._controller.posture(posture)
         except ValueError as error:
             posture, why_not = None, str(error)
@@ -200,12 +203,21 @@ class WholeBodyController(WholeBodyControllerBase):
         if said != self._said or state.stamp - self._told >= _STATE_PERIOD:
             self._said, self._told = said, state.stamp
             self.publish_gait_state(messages.gait_state(state))
+        if abs(state.stamp - self._shown) >= _BALANCE_PERIOD:
+            self._shown = state.stamp
+            self._show_balance()
         if state.mode is not self._mode:
             if state.reason:
                 self.get_logger().warning(f"{state.mode.name.lower().replace('_', ' ')}: {state.reason}")
             elif self._mode in _HALTED:
                 self.get_logger().info("the robot accepts commands again")
             self._mode = state.mode
+
+    def _show_balance(self) -> None:
+        """Publish how the robot keeps its balance, if anybody subscribes to that."""
+        balance = self._controller.balance() if self.balance_publisher.get_subscription_count() else None
+        if balance is not None:
+            self.publish_balance(balance_state(balance))
 
     def _begin_anew(self) -> None:
         """Start again: time has gone back, because the simulator stood the robot up where it started."""

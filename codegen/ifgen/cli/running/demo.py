@@ -17,7 +17,7 @@ from ifgen.config import installing
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.running.activation import ActivationError, put_on_path
 
-_PICTURES = (".gif", ".png")
+_PICTURES = (".gif", ".mp4", ".png")
 _GREATEST = 2**63 - 1  # integer of a parameter
 
 
@@ -37,7 +37,7 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
     default="all",
     show_default=True,
     shell_complete=_complete,
-    help="What to show: all, dance, push, stop, walk, or a .yaml file of yours.",
+    help="What to show: all, dance, obstacles, push, stop, walk, or a .yaml file of yours.",
 )
 @click.option("--idle", is_flag=True, help="No scenario: the robot stands, and waits for other programs.")
 @click.option("--without", metavar="NODE", multiple=True, help="Leave out a node; may be repeated.")
@@ -56,7 +56,7 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
 )
 @click.option("--headless", is_flag=True, help="No window and no page, and as fast as possible.")
 @click.option(
-    "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif) or a picture (.png)."
+    "--record", metavar="FILE", type=OUTPUT_FILE, help="Write an animation (.gif, .mp4) or a picture (.png)."
 )
 @click.option("--web", is_flag=True, help="Serve a page on 127.0.0.1 instead of a window, until Ctrl-C.")
 @click.option(
@@ -76,7 +76,11 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
     is_flag=True,
     help="No faster than real time, as with a window or page; on real rclpy also not in lockstep.",
 )
-@click.option("--camera", is_flag=True, help="Let the robot also look for faces, which takes time.")
+@click.option(
+    "--camera/--no-camera",
+    default=None,
+    help="Whether the robot sees, which takes time; by default on the local transport.",
+)
 @click.option(
     "--seed",
     type=click.IntRange(0, _GREATEST),
@@ -100,7 +104,7 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
     port: int,
     host: str | None,
     realtime: bool,
-    camera: bool,
+    camera: bool | None,
     seed: int,
     model: Path | None,
     joint_map: Path | None,
@@ -115,7 +119,8 @@ def demo(  # noqa: PLR0913, PLR0917  # one for each option
         raise click.UsageError(problem, context)
     _prepare(transport)
     # MuJoCo and the nodes take a second or two to import: nobody should wonder meanwhile.
-    click.echo(f"waking up the humanoid: {'idle' if idle else f'scenario {scenario}'}, seed {seed}")
+    what = "idle" if idle else f"scenario {Path(scenario).stem}"
+    click.echo(f"waking up the humanoid: {what}, seed {seed}")
     sys.stdout.flush()
     # Found by name: the toolkit does not depend on its examples.
     humanoid = import_module("humanoid.show.demo")
@@ -153,7 +158,7 @@ def _problem(context: click.Context, record: Path | None) -> str:
     if record is None:
         return ""
     if record.suffix.lower() not in _PICTURES:
-        return "--record needs a file that ends in .gif or .png"
+        return "--record needs a file that ends in .gif, .mp4 or .png"
     # A scenario takes a minute: what cannot be written should be said before.
     if not record.parent.is_dir():
         return f"--record: there is no folder {record.parent}"

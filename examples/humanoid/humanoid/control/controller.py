@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from ..data import (
+    BalanceState,
     EmergencyStop,
     FootstepPlan,
     GaitState,
@@ -26,7 +27,7 @@ from ..data import (
 from ..kinematics.dynamics import RobotState, natural_frequency, world_velocity
 from ..kinematics.legs import Legs
 from ..robot.model import PERIOD, HumanoidModel
-from ..robot.table import JOINT_NAMES, LEGS, UPPER_BODY
+from ..robot.table import LEGS, UPPER_BODY
 from ..spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
 from . import balance, effort
 from .fitting import fitted
@@ -34,6 +35,7 @@ from .inputs import LATE, LEASE, Inputs, Leases
 from .posture import level, relaxed, standing
 from .reference import GaitParameters, Sample
 from .stepping import Stepping
+from .support import support_polygon
 
 _FALLEN_HEIGHT = 0.68  # of base_link, as a share of the legs' length
 _RECOVERY = 1_000_000_000  # ns without a fault until the robot takes commands again
@@ -50,7 +52,7 @@ _BLEND = 4.0  # 1 / share of a swing in which the leg changes from the wanted pe
 
 
 class WholeBodyController:
-    """Turns sensor messages into set-points of 29 servos."""
+    """Turns sensor messages into set-points of all servos."""
 
     def __init__(
         self,
@@ -76,6 +78,7 @@ class WholeBodyController:
         self._joints = standing(model, self.stepping.feet, self.parameters)[0]
         self._command = self._joints.copy()
         self._asked: Posture | None = None
+        self._relaxed = relaxed(model.body)
         self._squat = 0.0
         self._deepest = _DEEPEST * model.body.scale
         self._fallen_height = _FALLEN_HEIGHT * model.body.leg_length
@@ -87,6 +90,7 @@ class WholeBodyController:
         self._stamp = 0
         self._elapsed = self._period  # since the last tick, seconds
         self.error = np.zeros(2)  # of the DCM at the last tick, metres
+        self._zmp: Array | None = None  # where the soles had to press at the last tick (2,)
 
     def follow(self, plan: FootstepPlan) -> str:
         """Walk on these footsteps from the next tick on; returns why not, or ""."""
@@ -95,12 +99,12 @@ class WholeBodyController:
     def posture(self, wanted: Posture | None) -> str:
         """Bring waist, head, arms and pelvis to a posture, or back to standing; returns why not, or ""."""
         if wanted is not None and not (
-            wanted.position.shape == (17,)
+            wanted.position.shape == self._relaxed.shape
             and np.isfinite(wanted.position).all()
             and math.isfinite(wanted.squat)
         ):
             self.inputs.refusals.not_finite += 1
-            return "a posture needs 17 finite positions and a finite depth"
+            return f"a posture needs {self._relaxed.size} finite positions and a finite depth"
         if wanted is not None and (why_not := self._halted or self._out_of_reach(wanted)):
             return why_not
         self._asked = wanted
@@ -157,6 +161,18 @@ class WholeBodyController:
             self.stepping.sample.phase,
         )
 
+    def balance(self) -> BalanceState | None:
+        """How the robot kept its balance at the last tick; None if it did not balance yet."""
+        if self._zmp is None or self._fallen:
+            return None
+        swing = self.stepping.sample.swing
+        swinging = swing.leg.side if swing else None
+        carrying = [self._state.planar_sole(side) for side in (0, 1) if side != swinging]
+        com = self._state.com
+        capture = com[:2] + self._state.com_velocity[:2] / self._omega
+        support = support_polygon(carrying, self.model.sole)
+        return BalanceState(self._stamp, com.copy(), capture, self._zmp, support)
+
     def tick(self, now: int, joints: JointStates, imu: Imu, odometry: Odometry | None) -> JointCommand:
         """The set-points that answer the newest readings, at a moment of simulated time.
 
@@ -185,9 +201,9 @@ class WholeBodyController:
         """The reason why a posture cannot be taken, or ""."""
         lower, upper = self.model.lower[UPPER_BODY], self.model.upper[UPPER_BODY]
         beyond = np.maximum(wanted.position - upper, lower - wanted.position)
-        worst = int(np.argmax(beyond))
-        if beyond[worst] > _SLACK:
-            name, there = JOINT_NAMES[UPPER_BODY][worst], wanted.position[worst]
+        worst = int(np.argmax(beyond)) if beyond.size else 0
+        if beyond.size and beyond[worst] > _SLACK:
+            name, there = self.model.body.upper_body[worst], wanted.position[worst]
             return f"{name} cannot be at {there:.2f} rad: {lower[worst]:.2f} to {upper[worst]:.2f}"
         if not 0.0 <= wanted.squat <= self._deepest:
             return f"the pelvis can be lowered by 0 to {self._deepest:.2g} m, not by {wanted.squat:.2f}"
@@ -236,7 +252,7 @@ class WholeBodyController:
         self._fallen = self._fallen or odometry.position[2] - lowest < self._fallen_height
 
     def _balance(self) -> Array:
-        """One tick of walking or standing: set-points (29,)."""
+        """One tick of walking or standing: set-points (joints,)."""
         state, stepping, parameters = self._state, self.stepping, self.parameters
         soles = [state.planar_sole(side) for side in (0, 1)]
         for _ in range(round(self._elapsed / self._period) - 1):
@@ -255,6 +271,7 @@ class WholeBodyController:
         force = effort.wanted_force(state, load.zmp, self._omega, height)
         motion = effort.Motion(state, force, stepping.accelerations())
         load = balance.distribute(motion.pressure_point(force), soles, stance, self.model.sole, parameters)
+        self._zmp = load.zmp
         torque = motion.torques(force, load)
         way = _JOINT_SPEED * self._elapsed
         joints = np.clip(self._inverse_kinematics(sample, height), self._joints - way, self._joints + way)
@@ -267,7 +284,7 @@ class WholeBodyController:
         return joints + (torque + self.model.kv * velocity) / self.model.kp
 
     def _inverse_kinematics(self, sample: Sample, height: float) -> Array:
-        """Joint positions (29,) that put the soles and the centre of mass where the reference has them."""
+        """Joint positions that put the soles and the centre of mass where the reference has them."""
         targets = self.stepping.targets()
         joints = self._upper_body()
         rotation = self._level(rotation_z((targets[0][0][2] + targets[1][0][2]) / 2))
@@ -284,7 +301,7 @@ class WholeBodyController:
     def _upper_body(self) -> Array:
         """The last joint positions, with waist, head and arms moved towards the requested posture."""
         joints = self._joints.copy()
-        wanted = relaxed() if self._asked is None else self._asked.position
+        wanted = self._relaxed if self._asked is None else self._asked.position
         squat = 0.0 if self._asked is None else self._asked.squat
         way = _ARM_SPEED * self._elapsed
         joints[UPPER_BODY] += np.clip(wanted - joints[UPPER_BODY], -way, way)

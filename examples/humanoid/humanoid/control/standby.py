@@ -53,7 +53,7 @@ class Standby:
         return self._last is not None and now - self._last > PATIENCE
 
     def commanded(self, now: int, setpoints: Array) -> None:
-        """Note that a good command (29,) has arrived."""
+        """Note that a good command (joints,) has arrived."""
         gap = self._last is None or now - self._last > PATIENCE
         self._since = now if gap or self._since is None else self._since
         self._last, self._commanded = now, setpoints

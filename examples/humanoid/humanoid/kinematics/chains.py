@@ -8,8 +8,9 @@ from itertools import pairwise
 import mujoco
 import numpy as np
 
+from ..robot.body import OURS, Body
 from ..robot.model import HumanoidModel
-from ..robot.table import ARM_JOINTS, HEAD_JOINTS, JOINT_NAMES, LEG_JOINTS, WAIST_JOINTS
+from ..robot.table import ARM_JOINTS, HEAD_JOINTS, LEG_JOINTS, SEVENTH, WAIST_JOINTS
 from ..spatial import Array, vector_of
 
 
@@ -25,15 +26,33 @@ def _side(prefix: str, names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(f"{prefix}_{name}" for name in names)
 
 
-CHAINS: dict[str, Chain] = {
-    "left_arm": Chain(_side("l", ARM_JOINTS), "l_gripper"),
-    "right_arm": Chain(_side("r", ARM_JOINTS), "r_gripper"),
-    "left_arm_with_waist": Chain((*WAIST_JOINTS, *_side("l", ARM_JOINTS)), "l_gripper"),
-    "right_arm_with_waist": Chain((*WAIST_JOINTS, *_side("r", ARM_JOINTS)), "r_gripper"),
+_ARM = (*ARM_JOINTS, SEVENTH)
+_WHOLE: dict[str, Chain] = {
+    "left_arm": Chain(_side("l", _ARM), "l_gripper"),
+    "right_arm": Chain(_side("r", _ARM), "r_gripper"),
+    "left_arm_with_waist": Chain((*WAIST_JOINTS, *_side("l", _ARM)), "l_gripper"),
+    "right_arm_with_waist": Chain((*WAIST_JOINTS, *_side("r", _ARM)), "r_gripper"),
     "left_leg": Chain(_side("l", LEG_JOINTS), "l_sole"),
     "right_leg": Chain(_side("r", LEG_JOINTS), "r_sole"),
     "head": Chain((*WAIST_JOINTS, *HEAD_JOINTS), "gaze"),
 }
+_NEEDED = {
+    "left_arm": _side("l", _ARM), "right_arm": _side("r", _ARM), "left_arm_with_waist": _side("l", _ARM),
+    "right_arm_with_waist": _side("r", _ARM), "head": HEAD_JOINTS,
+}  # fmt: skip
+
+
+def chains_of(body: Body) -> dict[str, Chain]:
+    """The chains of a robot, with those of their joints that it has; a limb without any is none."""
+    return {
+        name: Chain(body.those_of(chain.joints), chain.tip)
+        for name, chain in _WHOLE.items()
+        if body.those_of(_NEEDED.get(name, chain.joints))
+    }
+
+
+CHAINS = chains_of(OURS)
+"""The chains of our own robot."""
 
 
 class ChainKinematics:
@@ -41,7 +60,7 @@ class ChainKinematics:
 
     def __init__(self, model: HumanoidModel, chain: Chain) -> None:
         self.chain = chain
-        self.indices = np.array([JOINT_NAMES.index(name) for name in chain.joints])
+        self.indices = np.array([model.body.index(name) for name in chain.joints])
         self.lower, self.upper = model.lower[self.indices], model.upper[self.indices]
         self._model = model
         self._data = model.data()
@@ -52,7 +71,7 @@ class ChainKinematics:
         self._linear, self._angular = np.zeros((3, model.mj.nv)), np.zeros((3, model.mj.nv))
 
     def set_others(self, joints: Array) -> None:
-        """Take the positions (29,) of all joints; those outside the chain stay as they are."""
+        """Take the positions (joints,) of all joints; those outside the chain stay as they are."""
         self._data.qpos[self._model.qpos] = joints
 
     def forward(self, joints: Array) -> tuple[Array, Array]:

@@ -22,7 +22,7 @@ class RobotState:
         self._jacobians = [(np.zeros((3, model.mj.nv)), np.zeros((3, model.mj.nv))) for _ in SIDES]
 
     def set_posture(self, position: Array, orientation: Array, joints: Array) -> None:
-        """Take base_link's position (3,) and quaternion and the joints (29,); compute where everything is."""
+        """Take base_link's position (3,) and quaternion and all joints; compute where everything is."""
         x, y, z, w = orientation
         self._data.qpos[:3] = position
         self._data.qpos[3:7] = (w, x, y, z)
@@ -31,7 +31,7 @@ class RobotState:
         mujoco.mj_comPos(self.model.mj, self._data)
 
     def set_motion(self, linear: Array, angular: Array, joints: Array) -> None:
-        """Take velocities: base_link's in the world (3,), its spin in base_link (3,), the joints' (29,)."""
+        """Take velocities: base_link's in the world (3,), its spin in base_link (3,), all joints'."""
         self._data.qvel[:3] = linear
         self._data.qvel[3:6] = angular
         self._data.qvel[self.model.dof] = joints
@@ -55,7 +55,7 @@ class RobotState:
 
     @property
     def bias(self) -> Array:
-        """Joint torques (29,) that counter gravity and motion, as if nothing touched the robot."""
+        """Joint torques (joints,) that counter gravity and motion, as if nothing touched the robot."""
         return np.asarray(self._data.qfrc_bias[self.model.dof])
 
     @property
@@ -102,7 +102,7 @@ class RobotState:
         return np.vstack((linear, angular)), np.vstack((drift, turning)) @ velocities
 
     def contact_torque(self, side: int, force: Array, torque: Array) -> Array:
-        """Joint torques (29,) that make the ground answer with a force and torque (3,) at the sole."""
+        """Joint torques (joints,) that make the ground answer with a force and torque (3,) at the sole."""
         linear, angular = self._jacobian(side)
         return -(linear.T @ force + angular.T @ torque)[self.model.dof]
 

@@ -9,13 +9,15 @@ from enum import IntEnum
 import numpy as np
 
 from ..robot.model import HumanoidModel
+from ..robot.table import HEAD_JOINTS, WAIST_JOINTS
 from ..spatial import Array
-from .chains import CHAINS, ChainKinematics
+from .chains import ChainKinematics, chains_of
 from .ik import IkRequest, IkStatus, InverseKinematics
 
 POSITION_TOLERANCE = 5e-3  # metres
 ORIENTATION_TOLERANCE = 0.02  # radians
 _ATTEMPTS = 20
+_JOINTS = (*WAIST_JOINTS, *HEAD_JOINTS)
 
 
 class HeadMode(IntEnum):
@@ -42,9 +44,17 @@ class HeadPose:
 
     def __init__(self, model: HumanoidModel) -> None:
         self._solver = InverseKinematics(model)
-        self._kinematics = ChainKinematics(model, CHAINS["head"])
-        gaze, _ = self._kinematics.forward(np.zeros(5))
-        *_, neck, pitch = self._kinematics.anchors()
+        chain = chains_of(model.body).get("head")
+        self._has_neck = chain is not None
+        if chain is None:
+            return
+        self._kinematics = ChainKinematics(model, chain)
+        # Places in arrays over the five joints of our waist and head; joints that the robot lacks stay at 0.
+        self._places = [_JOINTS.index(name) for name in chain.joints]
+        self._lower, self._upper = np.zeros(5), np.zeros(5)
+        self._lower[self._places], self._upper[self._places] = self._kinematics.lower, self._kinematics.upper
+        gaze, _ = self._forward(np.zeros(5))
+        neck, pitch = self._axes(chain.joints)
         self._gaze: Array = gaze - neck  # with the head straight
         self._heights = (float(pitch[2] - neck[2]), float(gaze[2] - pitch[2]))
 
@@ -57,6 +67,8 @@ class HeadPose:
         orientation_tolerance: float = 0.0,
     ) -> HeadPoseResult:
         """Answer a request; a tolerance of 0 means the server's own."""
+        if not self._has_neck:
+            return HeadPoseResult(False, "the robot has no neck: neither head_yaw nor head_pitch")
         tolerances = (position_tolerance, orientation_tolerance)
         if not all(math.isfinite(number) and number >= 0 for number in tolerances):
             return HeadPoseResult(False, "tolerances must be finite and not negative")
@@ -86,19 +98,17 @@ class HeadPose:
 
     def _look_at(self, point: Array, tolerance: float) -> HeadPoseResult:
         """Turn the head and, beyond its range, the waist, each in closed form, until the two agree."""
-        kinematics = self._kinematics
+        lower, upper = self._lower, self._upper
         joints = np.zeros(5)
         for _ in range(8):
             yaw, pitch = head_angles(self._in_torso(joints, point), *self._heights)
-            head = np.clip([yaw, pitch], kinematics.lower[3:], kinematics.upper[3:])
+            head = np.clip([yaw, pitch], lower[3:], upper[3:])
             joints[3:] = head
             left = np.array([yaw, pitch]) - head
             if not left.any():
                 break
-            joints[[0, 2]] = np.clip(
-                joints[[0, 2]] + left, kinematics.lower[[0, 2]], kinematics.upper[[0, 2]]
-            )
-        gaze, rotation = kinematics.forward(joints)
+            joints[[0, 2]] = np.clip(joints[[0, 2]] + left, lower[[0, 2]], upper[[0, 2]])
+        gaze, rotation = self._forward(joints)
         way = point - gaze
         distance = float(np.linalg.norm(way))
         cosine = float(rotation[:, 0] @ way) / distance if distance > 1e-9 else -1.0
@@ -108,14 +118,25 @@ class HeadPose:
             if residual <= tolerance
             else f"the gaze stays {residual:.3f} rad off: waist and head are at their limits"
         )
-        return HeadPoseResult(
-            not message, message, kinematics.chain.joints, tuple(float(j) for j in joints), 0.0, residual
-        )
+        names, positions = self._kinematics.chain.joints, tuple(joints[self._places].tolist())
+        return HeadPoseResult(not message, message, names, positions, 0.0, residual)
+
+    def _forward(self, joints: Array) -> tuple[Array, Array]:
+        """Position (3,) and rotation matrix of the gaze, for the five joints of waist and head."""
+        return self._kinematics.forward(joints[self._places])
+
+    def _axes(self, names: tuple[str, ...]) -> tuple[Array, Array]:
+        """Points (3,) on the axes of head_yaw and head_pitch; of a neck with one joint, the same."""
+        anchors = dict(zip(names, self._kinematics.anchors(), strict=True))
+        yaw, pitch = (anchors.get(name) for name in HEAD_JOINTS)
+        neck = yaw if yaw is not None else pitch
+        assert neck is not None, "a chain of the head has a joint of the head"
+        return neck, neck if pitch is None else pitch
 
     def _in_torso(self, joints: Array, point: Array) -> Array:
         """A point in base_link, seen from the neck with the waist as it is and the head straight."""
         straight = np.concatenate([joints[:3], np.zeros(2)])
-        gaze, rotation = self._kinematics.forward(straight)
+        gaze, rotation = self._forward(straight)
         return rotation.T @ (point - gaze) + self._gaze
 
 

@@ -10,10 +10,10 @@ from enum import IntEnum
 
 import numpy as np
 
+from ..robot.body import Body
 from ..robot.model import HumanoidModel
-from ..robot.table import JOINT_NAMES
 from ..spatial import Array, matrix_of
-from .chains import CHAINS, ChainKinematics
+from .chains import CHAINS, ChainKinematics, chains_of
 from .descent import Tolerance, descend
 from .leg_ik import solve_leg
 
@@ -72,20 +72,20 @@ class InverseKinematics:
     def __init__(self, model: HumanoidModel, clock: Callable[[], float] = time.monotonic) -> None:
         self._model = model
         self._clock = clock
-        self._kinematics = {name: ChainKinematics(model, chain) for name, chain in CHAINS.items()}
+        chains = chains_of(model.body)
+        self._kinematics = {name: ChainKinematics(model, chain) for name, chain in chains.items()}
 
     def solve(self, request: IkRequest, present: Array | None = None) -> IkResult:
-        """Answer a request; `present` (29,) is the present joint positions, zero if not given."""
+        """Answer a request; `present` (joints,) is the present joint positions, zero if not given."""
         begun = self._clock()
-        if problem := _problem(request):
+        if problem := _problem(request, self._model.body):
             return IkResult(IkStatus.INVALID_REQUEST, problem)
         kinematics = self._kinematics.get(request.chain)
         if kinematics is None:
-            known = ", ".join(CHAINS)
-            return IkResult(IkStatus.UNKNOWN_CHAIN, f"there is no chain '{request.chain}'; I know {known}")
-        joints = np.zeros(29) if present is None else present.copy()
+            return IkResult(IkStatus.UNKNOWN_CHAIN, self._unknown(request.chain))
+        joints = np.zeros(len(self._model.lower)) if present is None else present.copy()
         for name, position in request.seed.items():
-            joints[JOINT_NAMES.index(name)] = position
+            joints[self._model.body.index(name)] = position
         kinematics.set_others(joints)
         target = (np.asarray(request.position, float), _rotation(request.orientation))
         start = joints[kinematics.indices]
@@ -95,6 +95,13 @@ class InverseKinematics:
         if not search.solved and not beyond:
             self._restart(search, request, begun)
         return self._answer(search, request, beyond, self._clock() - begun)
+
+    def _unknown(self, chain: str) -> str:
+        """Why there is no such chain."""
+        if chain in CHAINS:
+            limb = chain.removesuffix("_with_waist").replace("_", " ")
+            return f"the robot has no {limb}: none of its joints is in the model"
+        return f"there is no chain '{chain}'; I know {', '.join(self._kinematics)}"
 
     def _restart(self, search: _Search, request: IkRequest, begun: float) -> None:
         """Start again from other positions until it is solved, or until attempts or time run out."""
@@ -187,14 +194,14 @@ def _beyond_reach(kinematics: ChainKinematics, position: Array, tolerance: Toler
     return f"the target is {distance:.3f} m from the start of the chain, which is {length:.3f} m long"
 
 
-def _problem(request: IkRequest) -> str:
+def _problem(request: IkRequest, body: Body) -> str:
     """The first error in the numbers and names of a request, or ""."""
     if not (np.isfinite(request.position).all() and np.isfinite(request.orientation).all()):
         return "the target holds a number that is not finite"
     if np.linalg.norm(request.orientation) < 1e-6 and not request.position_only:
         return "the target's quaternion has length 0"
     for name, position in request.seed.items():
-        if name not in JOINT_NAMES:
+        if name not in body.joints:
             return f"the seed names a joint '{name}' that the robot does not have"
         if not math.isfinite(position):
             return f"the seed of {name} is not finite"

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..robot.model import HumanoidModel
 from ..spatial import Array
-from .chains import CHAINS, ChainKinematics
+from .chains import ChainKinematics, chains_of
 from .leg_ik import solve_leg
 
 _STEPS = 12
@@ -27,7 +27,8 @@ class Legs:
 
     def __init__(self, model: HumanoidModel) -> None:
         self._model = model
-        self._chains = [ChainKinematics(model, CHAINS[f"{side}_leg"]) for side in ("left", "right")]
+        chains = chains_of(model.body)
+        self._chains = [ChainKinematics(model, chains[f"{side}_leg"]) for side in ("left", "right")]
         self._bent = [_bent(chain) for chain in self._chains]
 
     def solve(self, side: int, pelvis: tuple[Array, Array], sole: tuple[Array, Array], start: Array) -> Array:

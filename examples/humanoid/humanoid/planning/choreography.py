@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from ..control.posture import relaxed
-from ..robot.table import JOINT_NAMES, UPPER_BODY
+from ..control.posture import posed, relaxed
+from ..robot.body import OURS, Body
 from ..spatial import Array
+
+_RAISING = ("shoulder_pitch", "elbow")  # what raises and bends an arm
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,13 +24,9 @@ class Beat:
     squat: float = 0.0
     steps: tuple[tuple[float, float, float], ...] = ()
 
-    @property
-    def joints(self) -> Array:
-        """Positions (17,) of waist, head and arms."""
-        joints = relaxed()
-        for name, position in self.pose.items():
-            joints[JOINT_NAMES.index(name) - UPPER_BODY.start] = position
-        return joints
+    def joints(self, body: Body) -> Array:
+        """Positions of waist, head and arms, as `body.upper_body`."""
+        return posed(body, self.pose, relaxed(body))
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +35,11 @@ class Choreography:
 
     tempo: float
     beats: tuple[Beat, ...]
+
+    def lacking(self, body: Body) -> str:
+        """The joint without which this dance cannot be recognised and that the robot lacks, or ""."""
+        used = {name for beat in self.beats for name in beat.pose if name.endswith(_RAISING)}
+        return next((name for name in sorted(used) if name not in body.joints), "")
 
 
 def _both(**left: float) -> dict[str, float]:
@@ -89,6 +90,6 @@ def blend(start: Array, end: Array, share: float) -> Array:
     return start + (end - start) * (share**3 * (10 - 15 * share + 6 * share * share))
 
 
-def standing_posture() -> Array:
-    """The posture (17,) in which every dance begins and ends."""
-    return np.array(relaxed())
+def standing_posture(body: Body = OURS) -> Array:
+    """The posture in which every dance begins and ends, as `body.upper_body`."""
+    return relaxed(body)

@@ -62,10 +62,12 @@ class DanceTick:
     result: DanceResult | None
 
 
-def problem(dance: str, tempo: float, known: Collection[str] = DANCES.keys()) -> str:
+def problem(dance: str, tempo: float, known: Collection[str] = DANCES.keys(), body: Body = OURS) -> str:
     """The reason why a goal must be rejected, or ""; `known` names the accepted ones of DANCES."""
     if dance not in known:
         return f"there is no dance '{dance}'; I know {', '.join(sorted(known))}"
+    if lacking := DANCES[dance].lacking(body):
+        return f"the robot has no joint {lacking}, which '{dance}' moves"
     if tempo and not (math.isfinite(tempo) and TEMPO[0] <= tempo <= TEMPO[1]):
         return f"{tempo:g} beats per minute cannot be danced; {TEMPO[0]:g} to {TEMPO[1]:g} can"
     return ""
@@ -82,8 +84,9 @@ class Dance:
         self._period = 60.0 / (tempo or choreography.tempo)
         self._begun = self._phase_begun = stamp
         self._phase = DancePhase.PREPARING
-        self._from = standing_posture()
-        self._now = (standing_posture(), 0.0)  # the posture sent last: positions, squat
+        self._body = body
+        self._from = standing_posture(body)
+        self._now = (self._from, 0.0)  # the posture sent last: positions, squat
         self._beat = 0
         self._waiting: tuple[
             tuple[float, float, float], ...
@@ -102,7 +105,7 @@ class Dance:
         """Take the newest joint states and gait state; returns what to send."""
         if self._first_index is None:
             self._first_index = gait.footstep_index
-        error = float(np.sqrt(np.mean((joints.position[UPPER_BODY] - self._now[0]) ** 2)))
+        error = float(np.linalg.norm(joints.position[UPPER_BODY] - self._now[0])) / math.sqrt(self._from.size)
         self._worst = max(self._worst, error)
         plan = None
         result = None
@@ -137,7 +140,7 @@ class Dance:
             self._progress = 1.0
             return None
         before, beat = self._beats[(number - 1) % len(self._beats)], self._beats[number % len(self._beats)]
-        self._move(before.joints, beat, elapsed / self._period - number, before.squat)
+        self._move(before.joints(self._body), beat, elapsed / self._period - number, before.squat)
         self._progress = max(self._progress, elapsed / (self._period * self._count))
         if number + 1 != self._beat:
             self._beat = number + 1
@@ -160,7 +163,7 @@ class Dance:
 
     def _move(self, start: Array, beat: Beat, share: float, squat: float = 0.0) -> None:
         share = min(max(share, 0.0), 1.0)
-        self._now = (blend(start, beat.joints, share), squat + (beat.squat - squat) * share)
+        self._now = (blend(start, beat.joints(self._body), share), squat + (beat.squat - squat) * share)
 
     def _enter(self, phase: DancePhase, stamp: int) -> None:
         self._phase, self._phase_begun, self._from = phase, stamp, self._now[0]

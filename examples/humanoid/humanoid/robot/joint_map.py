@@ -17,6 +17,13 @@ from .model import SoleGeometry
 _KEYS = ("base", "torso", "sole", "joints", "frames")
 _SOLE_KEYS = ("centre", "length", "width")
 _FRAME_KEYS = ("body", "xyz", "rpy")
+REQUIRED_JOINTS = tuple(table.JOINT_NAMES[: table.LEGS[1].stop])
+"""The joints that every robot must have: two legs of six joints."""
+KNOWN_JOINTS = (
+    *table.JOINT_NAMES[: table.ARMS[0].start],
+    *(f"{side}_{name}" for side in table.SIDES for name in (*table.ARM_JOINTS, table.SEVENTH)),
+)
+"""The joints that have a meaning for us, in the order of every array over joints."""
 _FRAMES = (*(frame.name for frame in table.FRAMES), "l_ankle", "r_ankle")
 
 
@@ -67,10 +74,10 @@ class _Reader:
 
     def map(self, document: Any) -> JointMap:
         entries = self._mapping(document, "the file", _KEYS)
-        joints = self._mapping(entries.get("joints", {}), "joints", table.JOINT_NAMES)
+        joints = self._mapping(entries.get("joints", {}), "joints", KNOWN_JOINTS)
         names = {ours: self._name(theirs, f"joints.{ours}") for ours, theirs in joints.items()}
         taken: dict[str, str] = {}
-        for ours in table.JOINT_NAMES:
+        for ours in KNOWN_JOINTS:
             theirs = names.get(ours, ours)
             if theirs in taken:
                 self._fail(f"joints.{ours}", f"'{theirs}' is already used for '{taken[theirs]}'")

@@ -46,7 +46,7 @@ SOLE = SoleGeometry(table.FOOT_CENTRE, table.FOOT_LENGTH / 2, table.FOOT_WIDTH /
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The names of the table's joints and bodies in a model."""
+    """The names of a robot's joints, ours: theirs, in the order of every array, and of its bodies."""
 
     joints: Mapping[str, str]
     base: str
@@ -55,16 +55,16 @@ class Names:
 
 @dataclass(frozen=True, slots=True)
 class HumanoidModel:
-    """A compiled model and the addresses in its arrays. Joint arrays are in the order of JOINT_NAMES."""
+    """A compiled model and the addresses in its arrays. Joint arrays are in the order of `body.joints`."""
 
     mj: mujoco.MjModel
     base: int  # body id of base_link
     torso: int  # body id
-    joints: Indices  # (29,) joint ids
-    qpos: Indices  # (29,) addresses of the joints
-    dof: Indices  # (29,)
-    actuators: Indices  # (29,)
-    lower: Array  # (29,) rad
+    joints: Indices  # (joints,) joint ids
+    qpos: Indices  # (joints,) addresses of the joints
+    dof: Indices  # (joints,)
+    actuators: Indices  # (joints,)
+    lower: Array  # (joints,) rad
     upper: Array
     effort: Array  # N m
     kp: Array  # gains of the position servos
@@ -97,12 +97,12 @@ def load(timestep: float = TIMESTEP, solids: Sequence[Solid] = ()) -> HumanoidMo
 
 
 def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidModel:
-    """Look up everything that the table names in a compiled model.
+    """Look up everything that controllers and simulator use in a compiled model.
 
-    Sites, sensors and actuators must have the names of the table; the lengths of the legs are measured.
+    Sites, sensors and actuators must have our names; the lengths of the legs are measured.
     """
-    joints = np.array([mj.joint(names.joints[name]).id for name in table.JOINT_NAMES])
-    actuators = np.array([mj.actuator(name).id for name in table.JOINT_NAMES])
+    joints = np.array([mj.joint(name).id for name in names.joints.values()])
+    actuators = np.array([mj.actuator(name).id for name in names.joints])
     base = mj.body(names.base).id
     frames = (*(frame.name for frame in table.FRAMES), "l_ankle", "r_ankle")
     lower, upper = mj.jnt_range[joints].T.copy()
@@ -120,13 +120,13 @@ def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidMo
         effort=mj.actuator_forcerange[actuators, 1].copy(),
         kp=mj.actuator_gainprm[actuators, 0].copy(),
         kv=-mj.actuator_biasprm[actuators, 2],
-        frames={name: mj.site(name).id for name in frames},
+        frames={site.name: site.id for site in map(mj.site, range(mj.nsite)) if site.name in frames},
         sensors=_sensors(mj),
         leg=_leg(mj, joints[:6]),
         has_our_legs=measures.has_our_legs,
         sole=sole,
         body=Body(
-            table.JOINT_NAMES,
+            tuple(names.joints),
             lower,
             upper,
             min(measures.leg_lengths),

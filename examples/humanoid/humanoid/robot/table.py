@@ -207,9 +207,10 @@ LEG_JOINTS = ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_
 ARM_JOINTS = ("shoulder_pitch", "shoulder_roll", "shoulder_yaw", "elbow", "wrist_roll", "wrist_pitch")
 WAIST_JOINTS = ("waist_yaw", "waist_roll", "waist_pitch")
 HEAD_JOINTS = ("head_yaw", "head_pitch")
+SEVENTH = "wrist_yaw"  # of arms that have one joint more than ours
 SIDES = ("l", "r")
 # Joint numbers: the columns of every array over joints.
 LEGS = (slice(0, 6), slice(6, 12))
 WAIST, HEAD = slice(12, 15), slice(15, 17)
 ARMS = (slice(17, 23), slice(23, 29))
-UPPER_BODY = slice(12, 29)
+UPPER_BODY = slice(12, None)

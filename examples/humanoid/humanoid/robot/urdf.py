@@ -1,11 +1,13 @@
 """The table as URDF, for robot_description: the same links, joints, masses and frames as in the MJCF.
 
-URDF has no capsules, so they become cylinders of the same length without their round ends; masses and
-inertias are those of the capsules. The floating joint of base_link and the servos have no place in URDF.
+URDF has no capsules and no ellipsoids. Capsules collide as cylinders of the same length, ellipsoids as
+spheres, and both look like several shapes; masses and inertias are theirs. The floating joint of base_link
+and the servos have no place in URDF.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -57,15 +59,38 @@ def _link(root: ElementTree.Element, link: table.Link) -> None:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.tolist()
     add(inertial, "inertia", ixx=xx, ixy=xy, ixz=xz, iyy=yy, iyz=yz, izz=zz)
     for shape in link.shapes:
-        for tag in ("visual", "collision"):
-            part = add(element, tag)
-            add(part, "origin", xyz=shape.position, rpy=(0.0, 0.0, 0.0))
-            _geometry(add(part, "geometry"), shape)
-            if tag == "visual":
-                material = add(
-                    part, "material", name="colour_" + "_".join(f"{c * 255:.0f}" for c in shape.colour)
-                )
-                add(material, "color", rgba=(*shape.colour, 1.0))
+        for part in _looks(shape):
+            _geometry(_coloured(element, part), part)
+        collision = add(element, "collision")
+        add(collision, "origin", xyz=shape.position, rpy=(0.0, 0.0, 0.0))
+        _geometry(add(collision, "geometry"), shape)
+
+
+def _coloured(link: ElementTree.Element, shape: table.Shape) -> ElementTree.Element:
+    """A visual at the place and in the colour of a shape; returns its geometry."""
+    visual = add(link, "visual")
+    add(visual, "origin", xyz=shape.position, rpy=(0.0, 0.0, 0.0))
+    geometry = add(visual, "geometry")
+    material = add(visual, "material", name="colour_" + "_".join(f"{c * 255:.0f}" for c in shape.colour))
+    add(material, "color", rgba=(*shape.colour, 1.0))
+    return geometry
+
+
+def _looks(shape: table.Shape) -> list[table.Shape]:
+    """The shapes to show for one: a capsule with its round ends, a row of spheres for an ellipsoid."""
+    axis = int(np.argmax(shape.size))
+    if shape.kind == "capsule":
+        radius, away, axis = shape.size[0], shape.size[1], 2
+        sides: tuple[float, ...] = (-1, 1)
+    elif shape.kind == "ellipsoid":
+        radius = (sum(shape.size) - shape.size[axis]) / 2
+        away = shape.size[axis] - radius
+        sides = (-1, -0.5, 0, 0.5, 1)
+    else:
+        return [shape]
+    places = ([p + side * away * (i == axis) for i, p in enumerate(shape.position)] for side in sides)
+    ends = [replace(shape, kind="sphere", size=(radius, 0.0, 0.0), position=(x, y, z)) for x, y, z in places]
+    return ends if shape.kind == "ellipsoid" else [shape, *ends]
 
 
 def _geometry(parent: ElementTree.Element, shape: table.Shape) -> None:

@@ -44,3 +44,9 @@ def camera_info(header: Header, lens: Lens) -> CameraInfo:
         r=[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0],
         p=[focal, 0.0, x, 0.0, 0.0, focal, y, 0.0, 0.0, 0.0, 1.0, 0.0],
     )
+
+
+def read_lens(message: CameraInfo) -> Lens | None:
+    """The calibration in a message; None if the camera is not calibrated. Distortion is not looked at."""
+    focal, x, y = message.k[0], message.k[2], message.k[5]
+    return Lens(message.width, message.height, focal, x, y) if focal > 0 else None

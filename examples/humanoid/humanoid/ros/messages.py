@@ -21,6 +21,7 @@ from sensor_msgs.msg import Imu as ImuMessage
 from sensor_msgs.msg import JointState as JointStateMessage
 from std_msgs.msg import Float64MultiArray, Header, MultiArrayDimension
 
+from ..control.posture import relaxed
 from ..data import (
     SECOND,
     STEP_TIME,
@@ -41,12 +42,11 @@ from ..data import (
     Support,
 )
 from ..robot import table
+from ..robot.body import OURS, Body
 from ..spatial import Array
 
 Kind = TypeVar("Kind", bound=IntEnum)
 
-_NAMES = list(table.JOINT_NAMES)
-_UPPER_BODY = _NAMES[12:]
 _STAMP = "stamp"
 _SQUAT = "squat"
 _TEXT = 255  # maximum length of a reason
@@ -117,7 +117,7 @@ def stamped(stamp: int, pose: Pose) -> PoseStamped:
     return PoseStamped(header=header(stamp, "odom"), pose=pose)
 
 
-def joint_states(states: JointStates, names: Sequence[str] = _NAMES) -> JointStateMessage:
+def joint_states(states: JointStates, names: Sequence[str] = OURS.joints) -> JointStateMessage:
     """For /joint_encoders and /joint_states."""
     return JointStateMessage(
         header=header(states.stamp, ""),
@@ -128,11 +128,11 @@ def joint_states(states: JointStates, names: Sequence[str] = _NAMES) -> JointSta
     )
 
 
-def read_joint_states(message: JointStateMessage) -> JointStates:
-    """From /joint_states. Raises ValueError if joints differ from the model's or values are missing."""
-    if message.name != _NAMES:
-        raise ValueError(f"expected the {len(_NAMES)} joints of the model, in its order")
-    size = len(_NAMES)
+def read_joint_states(message: JointStateMessage, body: Body = OURS) -> JointStates:
+    """From /joint_states. Raises ValueError if joints differ from the robot's or values are missing."""
+    size = len(body.joints)
+    if tuple(message.name) != body.joints:
+        raise ValueError(f"expected the {size} joints of the model, in its order")
     parts = [np.array(values, dtype=float) for values in (message.position, message.velocity, message.effort)]
     if any(part.size != size for part in parts):
         raise ValueError(f"expected {size} positions, velocities and efforts")
@@ -308,23 +308,29 @@ def read_gait_state(message: GaitStateMessage) -> GaitState:
     )
 
 
-def posture(value: Posture | None, stamp: int) -> JointStateMessage:
+def posture(value: Posture | None, stamp: int, body: Body = OURS) -> JointStateMessage:
     """For /posture; without names it ends the request for a posture."""
     if value is None:
         return JointStateMessage(header=header(stamp, ""))
-    names, positions = [*_UPPER_BODY, _SQUAT], _doubles([*value.position, value.squat])
+    names, positions = [*body.upper_body, _SQUAT], _doubles([*value.position, value.squat])
     return JointStateMessage(header=header(stamp, ""), name=names, position=positions)
 
 
-def read_posture(message: JointStateMessage) -> Posture | None:
-    """From /posture. Raises ValueError unless it has no names or all joints of the upper body."""
+def read_posture(message: JointStateMessage, body: Body = OURS) -> Posture | None:
+    """From /posture; joints that it does not name stay as they are when the robot stands.
+
+    Raises ValueError for joints that are not of the upper body, and for names without a position.
+    """
     if not message.name:
         return None
-    values = dict(zip(message.name, message.position, strict=False))
-    missing = [name for name in _UPPER_BODY if name not in values]
-    if missing:
-        raise ValueError(f"{missing[0]} has no position: a posture needs waist, head and arms")
-    return Posture(np.array([values[name] for name in _UPPER_BODY]), values.get(_SQUAT, 0.0))
+    if len(message.position) != len(message.name):
+        raise ValueError(f"{len(message.name)} joints, but {len(message.position)} positions")
+    values = dict(zip(message.name, message.position, strict=True))
+    squat = values.pop(_SQUAT, 0.0)
+    usual = dict(zip(body.upper_body, relaxed(body).tolist(), strict=True))
+    if unknown := [name for name in values if name not in usual]:
+        raise ValueError(f"the robot has no joint '{unknown[0]}' in waist, head and arms")
+    return Posture(np.array(list((usual | values).values())), squat)
 
 
 def emergency_stop(status: EmergencyStop) -> EmergencyStopMessage:

@@ -8,6 +8,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 
 from .. import data
+from ..robot.body import OURS, Body
 from . import messages
 
 Reading = TypeVar("Reading")
@@ -88,8 +89,9 @@ def newest_of_all(first: Recent[Any], *others: Recent[Any]) -> int | None:
 class LatestJoints:
     """The newest joint states, for a node that seldom needs them: a message is read when it is asked for."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: Node, body: Body = OURS) -> None:
         self._logger = node.get_logger()
+        self._body = body
         self._unread: JointState | None = None
         self._read: data.JointStates | None = None
 
@@ -102,7 +104,7 @@ class LatestJoints:
         message, self._unread = self._unread, None
         if message is not None:
             try:
-                self._read = messages.read_joint_states(message)
+                self._read = messages.read_joint_states(message, self._body)
             except ValueError as error:
                 self._logger.warning(f"/joint_states: {error}", throttle_duration_sec=1.0)
         return self._read

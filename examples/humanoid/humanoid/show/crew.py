@@ -32,8 +32,8 @@ from .scenarios import Parameters
 
 SIMULATOR = "humanoid_simulator"
 
-EXTRA = ("face_detection",)
-"""Nodes that run only on demand."""
+EXTRA = ("camera_driver", "face_detection", "obstacle_mapper")
+"""Nodes that run only where the robot sees."""
 
 GROUPS: dict[str, tuple[str, ...]] = {
     "physics": (SIMULATOR,),
@@ -52,9 +52,8 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "navigation_action_server",
         "high_level_task_manager",
         "teleop",
-        "face_detection",
     ),
-    "sight": ("camera_driver",),
+    "sight": ("camera_driver", "face_detection", "obstacle_mapper"),
 }
 """Nodes by process; each is in the package of its name."""
 
@@ -71,6 +70,7 @@ WITH_BODY = (
     "footstep_generation_server",
     "navigation_action_server",
     "dance_action_server",
+    "obstacle_mapper",
 )
 """Nodes that load the robot's model: their parameters `model_file` and `joint_map` say which."""
 

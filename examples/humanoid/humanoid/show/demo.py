@@ -30,6 +30,7 @@ from ..simulation.rendering import RenderingError, check
 from . import crew, parts, report
 from .audience import Audience, AudienceError
 from .director import Director
+from .pictures import check_format
 from .recorder import Recorder, check_writable
 from .replacing import ReplacementError, checked, split
 from .scenarios import ScenarioFileError, read
@@ -76,9 +77,14 @@ class Options:
     realtime: bool = False
     seed: int = 0
     noise: bool = True
-    camera: bool = False
+    camera: bool | None = None  # None: where time waits for the pictures
     model: Path | None = None
     joint_map: Path | None = None
+
+    @property
+    def sees(self) -> bool:
+        """Whether the robot sees."""
+        return self.transport == "local" if self.camera is None else self.camera
 
     @property
     def model_parameters(self) -> tuple[str, str]:
@@ -93,6 +99,7 @@ def main(options: Options) -> int:
         load_model(*options.model_parameters)  # its errors should be reported before nodes start
         if options.record is not None:
             check_writable(options.record)
+            check_format(options.record)
             check()
     except (ModelError, RenderingError) as error:
         sys.exit(f"error: {error}")
@@ -130,9 +137,9 @@ class _Show:
         overrides = [Parameter(k, value=v) for k, v in self._scenario.get("audience", {}).items()]
         audience = Audience(parameter_overrides=[Parameter("use_sim_time", value=True), *overrides])
         self._director = Director(self._say, lambda: audience.is_over)
-        self._recorder = Recorder(load_model(*options.model_parameters)) if options.record else None
+        self._recorder = self._record_to(options.record) if options.record else None
         self._window = self._open_window() if options.window and display() else None
-        if options.window and not display():
+        if options.window and not display() and not options.record:
             print("no display for a window: see the robot with --web or --record FILE.gif", flush=True)
         known = crew.all_nodes()
         self._without = {checked(name, known) for name in options.without}
@@ -167,7 +174,7 @@ class _Show:
             )
 
     def _members(self, group: str) -> tuple[str, ...]:
-        names = crew.members(group, with_extra=self._options.camera)
+        names = crew.members(group, with_extra=self._options.sees)
         return tuple(name for name in names if name not in self._without)
 
     def play(self) -> int:
@@ -255,10 +262,13 @@ class _Show:
             while True:
                 self._executor.spin_once(timeout_sec=_TURN)
 
+    def _record_to(self, path: Path) -> Recorder:
+        return Recorder(load_model(*self._options.model_parameters), path)
+
     def _record(self, recorder: Recorder, path: Path) -> bool:
         """Write the pictures; returns whether that succeeded."""
         try:
-            recorder.save(path)
+            recorder.save(self._line.draws)
         except (RenderingError, OSError) as error:
             print(f"error: {path} was not written: {error}", file=sys.stderr)
             return False
@@ -289,7 +299,7 @@ class _Show:
         model_file, joint_map = options.model_parameters
         body = {"model_file": model_file, "joint_map": joint_map}
         parameters = {**dict.fromkeys(crew.WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
-        parameters["camera_driver"] = {"streaming": options.camera}
+        parameters["camera_driver"] = {"streaming": options.sees}
         for node, values in self._scenario.items():
             parameters[node] = {**parameters.get(node, {}), **values}
         return parameters

@@ -27,13 +27,27 @@ class ProgressLine:
         now = time.monotonic()
         if not sys.stdout.isatty() or now - self._shown < _LINE:
             return
-        self._shown, self._open = now, True
+        self._shown = now
         if director.mode is Mode.UNKNOWN:
             text = "waiting for the nodes"
         else:
             mode = director.mode.name.lower().replace("_", " ")
             speed = (director.now - (director.begun or 0.0)) / max(now - started, 1e-3)
             text = f"{director.now:7.2f} s  {mode}, {director.score.steps} steps, {speed:.1f}x real time"
+        self._print(text)
+
+    def draws(self, number: int, total: int) -> None:
+        """Show how many pictures are drawn; a pipe hears once that it takes a while."""
+        if not sys.stdout.isatty():
+            if number == 1:
+                print(f"drawing {total} pictures", flush=True)
+            return
+        self._print(f"drawing picture {number} of {total}")
+        if number == total:
+            self.clear()
+
+    def _print(self, text: str) -> None:
+        self._open = True
         width = shutil.get_terminal_size().columns - 1
         print(f"\r\x1b[K{text[:width]}\r", end="", flush=True)
 

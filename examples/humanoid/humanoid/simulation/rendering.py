@@ -1,4 +1,4 @@
-"""Images of the simulation: those of the head camera, and those of a camera that follows the robot.
+"""Images of the simulation: those of the head camera, and what other pictures are drawn with.
 
 MuJoCo needs OpenGL for them and reads from MUJOCO_GL which one to use. If that is not set, the candidates are
 tried.
@@ -13,7 +13,6 @@ import os
 import subprocess
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -30,7 +29,6 @@ from .sim import Simulator
 Picture = NDArray[np.uint8]  # (height, width, 3)
 
 PACKAGES = {"egl": "libegl1 libegl-mesa0 libgl1-mesa-dri", "osmesa": "libosmesa6"}
-FRAME_TIME = 100  # ms between the pictures of an animation
 _COLOURS = {Leg.LEFT: (0.2, 0.8, 0.3, 0.6), Leg.RIGHT: (0.95, 0.55, 0.1, 0.6)}
 _THICK = 0.002  # m, half the thickness
 _PROBE = "import mujoco; mujoco.GLContext(8, 8).make_current()"
@@ -68,42 +66,19 @@ def choose_gl() -> str:
 def check() -> None:
     """Raise RenderingError if images cannot be rendered here."""
     choose_gl()
-    _image()
+    image()
 
 
 class HeadCamera:
     """The robot's camera: small images without shadows, because they are drawn without a graphics card."""
 
     def __init__(self, model: HumanoidModel, width: int = 320, height: int = 240) -> None:
-        self._renderer = _renderer(model, width, height)
+        self._renderer = renderer(model.mj, width, height)
         self._renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
 
     def picture(self, simulator: Simulator) -> Picture:
         """The camera's image at this moment."""
         self._renderer.update_scene(simulator.data, "head_camera")
-        return np.array(self._renderer.render())
-
-    def close(self) -> None:
-        """Release OpenGL; otherwise Python complains when it ends."""
-        self._renderer.close()
-
-
-class FollowCamera:
-    """A camera beside the robot that moves with it."""
-
-    def __init__(self, model: HumanoidModel, width: int, height: int) -> None:
-        self._model = model
-        self._renderer = _renderer(model, width, height)
-        self._camera = mujoco.MjvCamera()
-
-    def picture(
-        self, simulator: Simulator, steps: Sequence[Footstep] = (), solids: Sequence[Solid] = ()
-    ) -> Picture:
-        """An image of the robot at this moment, with the next footsteps, and obstacles of other models."""
-        aim(self._camera, *simulator.data.qpos[:2])
-        self._renderer.update_scene(simulator.data, self._camera)
-        draw_footsteps(self._renderer.scene, steps, self._model.sole)
-        draw_solids(self._renderer.scene, solids)
         return np.array(self._renderer.render())
 
     def close(self) -> None:
@@ -136,10 +111,11 @@ def draw_solids(scene: Any, solids: Sequence[Solid]) -> None:
     """Add obstacles to an MjvScene."""
     kinds = {"box": mujoco.mjtGeom.mjGEOM_BOX, "cylinder": mujoco.mjtGeom.mjGEOM_CYLINDER}
     for solid in solids[: scene.maxgeom - scene.ngeom]:
+        half, high = solid.width / 2, solid.height / 2
         mujoco.mjv_initGeom(
             scene.geoms[scene.ngeom],
             kinds[solid.kind],
-            np.array([solid.width / 2, solid.width / 2, solid.height / 2]),
+            np.array([half, half, high] if solid.kind == "box" else [half, high, 0.0]),
             np.array([solid.x, solid.y, solid.height / 2]),
             np.eye(3).flatten(),
             np.array([*solid.colour, 1.0], dtype=np.float32),
@@ -147,35 +123,19 @@ def draw_solids(scene: Any, solids: Sequence[Solid]) -> None:
         scene.ngeom += 1
 
 
-def save_png(picture: Picture, path: Path) -> None:
-    """Write one picture."""
-    _image().fromarray(picture).save(path)
-
-
-def save_gif(pictures: Sequence[Picture], path: Path, frame_time: int = FRAME_TIME) -> None:
-    """Write an animation that repeats; `frame_time` is in milliseconds."""
-    if not pictures:
-        raise RenderingError("there is no picture to make an animation of")
-    image = _image()
-    # One palette for all pictures: otherwise colours flicker, and the file is larger. Footsteps are small
-    # and not in all of them, so it takes many pictures to include their colours.
-    samples = [picture[::2, ::2] for picture in pictures[:: max(1, len(pictures) // 16)]]
-    palette = image.fromarray(np.concatenate(samples)).quantize(256)
-    frames = [image.fromarray(picture).quantize(palette=palette, dither=0) for picture in pictures]
-    frames[0].save(path, save_all=True, append_images=frames[1:], duration=frame_time, loop=0)
-
-
-def _renderer(model: HumanoidModel, width: int, height: int) -> mujoco.Renderer:
+def renderer(mj: Any, width: int, height: int) -> mujoco.Renderer:
+    """What draws an MjModel. Raises RenderingError."""
     name = choose_gl()
     try:
-        return mujoco.Renderer(model.mj, height, width)
+        return mujoco.Renderer(mj, height, width)
     except (ImportError, RuntimeError, AttributeError, mujoco.FatalError) as error:
         packages = PACKAGES.get(name)
         missing = f"; on Debian or Ubuntu: apt install {packages}" if packages else ""
         raise RenderingError(f"no picture can be drawn with MUJOCO_GL={name}: {error}{missing}") from error
 
 
-def _image() -> ModuleType:
+def image() -> ModuleType:
+    """Pillow's module `Image`. Raises RenderingError without it."""
     try:
         from PIL import Image  # only pictures need it
     except ImportError as error:

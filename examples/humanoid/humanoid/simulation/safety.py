@@ -52,7 +52,7 @@ class CommandGate:
         self.reset(np.zeros_like(lower))
 
     def reset(self, setpoints: Array) -> None:
-        """Hold these positions (29,) until the first command arrives; there is no limit to that wait."""
+        """Hold these positions (joints,) until the first command arrives; there is no limit to that wait."""
         self._setpoints = setpoints.copy()
         self._accepted: int | None = None
         self._answered: int | None = None  # the last tick that a command was for
@@ -90,7 +90,7 @@ class CommandGate:
         return False
 
     def protect(self, setpoints: Array) -> None:
-        """Follow these positions (29,) instead of any command."""
+        """Follow these positions (joints,) instead of any command."""
         self._setpoints = setpoints.copy()
 
     def _has_one(self, command: JointCommand, now: int) -> bool:
@@ -99,7 +99,7 @@ class CommandGate:
         return command.stamp <= self._answered if command.answers else now - self._answered <= MISSING_AFTER
 
     def setpoints(self, now: int) -> Array:
-        """The set-points (29,) for the servos in the next tick."""
+        """The set-points (joints,) for the servos in the next tick."""
         if self._accepted is not None and now - self._accepted > MISSING_AFTER:
             self.refusals.missing += 1
         return self._setpoints

@@ -59,7 +59,7 @@ class Simulator:
         self.reset()
 
     def reset(self, posture: Array | None = None, base: Array | None = None) -> None:
-        """Start again at time 0, with joint positions (29,) and base_link's position (3,), if given."""
+        """Start again at time 0, with joint positions (joints,) and base_link's position (3,), if given."""
         self.stamp = 0
         self._random = generator(self._seed, "sim")
         self._pushes.clear()
@@ -109,8 +109,8 @@ class Simulator:
         )
         joints = JointStates(
             self.stamp,
-            data.qpos[self.model.qpos] + noise.position * draw(29),
-            data.qvel[self.model.dof] + noise.velocity * draw(29),
+            data.qpos[self.model.qpos] + noise.position * draw(len(self.model.qpos)),
+            data.qvel[self.model.dof] + noise.velocity * draw(len(self.model.qpos)),
             data.actuator_force[self.model.actuators].copy(),
         )
         left, right = (

@@ -1,14 +1,15 @@
 // The nodes in columns by their role. A chosen node shows who it talks to, and over what.
 const SVG = "http://www.w3.org/2000/svg";
 const ROLES = {
-  "World": ["humanoid_simulator", "audience", "microphone"],
+  "World": ["humanoid_simulator", "audience", "referee", "director"],
   "Senses": ["camera_driver", "joint_state_publisher", "imu_fusion", "face_detection", "obstacle_detection", "mapping", "speech_recognition", "teleop", "battery_monitor"],
   "Decisions": ["high_level_task_manager", "navigation_action_server", "dance_action_server", "emergency_stop", "inverse_kinematics_server"],
   "Plans": ["motion_planner", "footstep_planner", "footstep_generation_server", "gait_planner"],
   "Motion": ["whole_body_controller", "joint_controller"],
   "Others": [],
 };
-const [WIDTH, HEIGHT, COLUMN, ROW, TOP] = [168, 28, 236, 46, 34];
+const [WIDTH, HEIGHT, COLUMN, ROW, TOP] = [186, 28, 250, 66, 34];
+const MANY = 5; // listeners of a topic that would cover all others: it is drawn only for a chosen node
 
 function make(name, attributes, parent, text) {
   const element = document.createElementNS(SVG, name);
@@ -38,6 +39,7 @@ export class Graph {
   constructor(place, big) {
     this.place = place;
     this.big = big;
+    this.large = big.querySelector("div");
     this.open = document.createElement("button");
     this.open.textContent = "Show large";
     this.open.style.flex = "0 0 auto";
@@ -49,6 +51,7 @@ export class Graph {
     this.small = document.createElement("div");
     place.append(this.open, this.small, this.list);
     document.addEventListener("tab", () => this.draw());
+    big.addEventListener("close", () => this.draw());
   }
 
   show(graph) {
@@ -59,7 +62,7 @@ export class Graph {
   draw() {
     if (!this.graph) return;
     if (!this.place.hidden) this.small.replaceChildren(this.picture());
-    if (this.big.open) this.big.lastElementChild.replaceChildren(this.picture());
+    if (this.big.open) this.large.replaceChildren(this.picture());
     this.explain();
   }
 
@@ -74,9 +77,11 @@ export class Graph {
       make("text", { class: "role", x: column * COLUMN, y: 18 }, svg, role);
       names.forEach((name, row) => places.set(name, [column * COLUMN, TOP + row * ROW + HEIGHT / 2]));
     });
+    const loud = this.loud();
     for (const [from, to, names] of links) {
       if (!places.has(from) || !places.has(to)) continue;
       const css = from === this.chosen ? "out" : to === this.chosen ? "in" : "";
+      if (!css && names.every((name) => loud.has(name))) continue;
       const path = make("path", { d: curve(places.get(from), places.get(to)), class: css }, svg);
       make("title", {}, path, `${from} → ${to}: ${names.join(", ")}`);
     }
@@ -93,13 +98,23 @@ export class Graph {
     return svg;
   }
 
+  // The topics that many nodes listen to.
+  loud() {
+    const listeners = new Map();
+    for (const [, to, names] of this.graph.links) {
+      for (const name of names) listeners.set(name, (listeners.get(name) ?? new Set()).add(to));
+    }
+    return new Set([...listeners].filter(([, nodes]) => nodes.size > MANY).map(([name]) => name));
+  }
+
   explain() {
     const { links, problems } = this.graph;
     const lines = this.chosen
       ? links
           .filter(([from, to]) => from === this.chosen || to === this.chosen)
           .map(([from, to, names]) => (from === this.chosen ? `to ${to}: ` : `from ${from}: `) + names.join(", "))
-      : [`Choose a node: it shows who it talks to.`];
+      : ["Choose a node: it shows who it talks to.", `Heard by many, and drawn only then: ${[...this.loud()].join(", ")}`];
+    (this.big.open ? this.big : this.place).append(this.list);
     this.list.replaceChildren(
       ...[...problems, ...lines].map((text) => {
         const line = document.createElement("li");

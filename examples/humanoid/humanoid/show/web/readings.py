@@ -10,6 +10,7 @@ from typing import Any
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import (
+    BalanceState,
     BatteryStatus,
     DetectedObjectArray,
     EmergencyStop,
@@ -73,7 +74,7 @@ def _odometry(message: Odometry) -> list[float]:
 
 def _footsteps(message: FootstepPlan) -> dict[str, Any]:
     steps = [
-        [s.leg, *rounded(s.position.x, s.position.y, s.position.z, yaw_of(s.orientation))]
+        [s.leg, *rounded(s.position.x, s.position.y, s.position.z, yaw_of(s.orientation)), s.index]
         for s in message.steps
     ]
     goal = message.goal
@@ -83,8 +84,18 @@ def _footsteps(message: FootstepPlan) -> dict[str, Any]:
     }
 
 
-def _gait(message: GaitState) -> dict[str, str]:
-    return {"mode": _constant(GaitState, "MODE_", message.mode), "reason": message.reason}
+def _gait(message: GaitState) -> dict[str, Any]:
+    mode = _constant(GaitState, "MODE_", message.mode)
+    return {"mode": mode, "reason": message.reason, "next": message.footstep_index}
+
+
+def _balance(message: BalanceState) -> dict[str, Any]:
+    capture, zmp = message.capture_point, message.zero_moment_point
+    return {
+        "capture": rounded(capture.x, capture.y),
+        "zmp": rounded(zmp.x, zmp.y),
+        "support": [rounded(point.x, point.y) for point in message.support.points],
+    }
 
 
 def _battery(message: BatteryStatus) -> dict[str, Any]:
@@ -183,6 +194,7 @@ READINGS: Mapping[str, Reading] = {
     "/odom": Reading(Odometry, "base", _odometry),
     "/footsteps/upcoming": Reading(FootstepPlan, "footsteps", _footsteps, latched=True),
     "/gait_state": Reading(GaitState, "gait", _gait, latched=True),
+    "/whole_body_controller/balance": Reading(BalanceState, "balance", _balance),
     "/battery": Reading(BatteryStatus, "battery", _battery, latched=True),
     "/emergency_stop": Reading(EmergencyStop, "stop", _stop, latched=True),
     "/high_level_task_manager/task": Reading(TaskStatus, "task", _task, latched=True),

@@ -11,6 +11,9 @@ const TILE = 0.5; // so that walking can be seen
 const TRAIL = 600; // points
 const TRAIL_STEP = 0.02;
 const OCCUPIED = 50; // percent
+const LEAD = 0.7;
+const SLOW = 70; // ms between frames above which the picture is made simpler
+const FRAMES = 40; // that are looked at for this
 
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
@@ -31,8 +34,16 @@ function chequers() {
   return texture;
 }
 
-const flat = (color, opacity = 1) =>
-  new THREE.MeshBasicMaterial({ color, transparent: opacity < 1, opacity, depthWrite: opacity === 1 });
+const flat = (color, opacity = 1) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
+
+// Draw something over what stands there, later things over earlier ones.
+function above(object, order) {
+  object.traverse((part) => {
+    if (part.material) part.material.depthTest = false;
+    part.renderOrder = order;
+  });
+  return object;
+}
 
 // An arrow on the floor from (0, 0) along x; its length is its scale.
 function arrow(color) {
@@ -97,14 +108,16 @@ export class Scene {
     this.goal.add(heading);
     this.hover = add(ring(0.1, 0.12, 0x1f6feb, 0.6), 0.004);
     this.push = add(arrow(0xd6336c), 1.0);
-    this.push.material.depthTest = false;
-    this.capture = add(new THREE.Mesh(new THREE.CircleGeometry(0.022, 24), flat(0xd6336c)), 0.016);
-    this.zmp = add(new THREE.Mesh(new THREE.CircleGeometry(0.016, 24), flat(0x7048e8)), 0.018);
-    this.support = add(new THREE.Mesh(new THREE.BufferGeometry(), flat(0x1098ad, 0.35)), 0.014);
+    this.capture = add(new THREE.Mesh(new THREE.CircleGeometry(0.03, 32), flat(0xd6336c)), 0.01);
+    this.zmp = add(new THREE.Mesh(new THREE.CircleGeometry(0.022, 32), flat(0x7048e8)), 0.01);
+    this.support = add(new THREE.Mesh(new THREE.BufferGeometry(), flat(0x1098ad, 0.4)), 0.01);
+    [this.goal, this.support, this.capture, this.zmp, this.push].forEach(above);
     this.path = add(new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f6feb })), 0.006);
     this.trail = add(new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x8a97a5 })), 0.003);
     this.map = add(new THREE.Mesh(new THREE.PlaneGeometry(1, 1), flat(0xffffff, 0.5)), 0.002);
     this.trailed = [];
+    this.lead = new THREE.Vector3();
+    this.centre = new THREE.Vector3();
   }
 
   paint() {
@@ -123,18 +136,18 @@ export class Scene {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
     if (!width || !height) return;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * (this.simpler ? 0.75 : 1));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
-    this.camera.fov = width < height ? 50 : 38;
+    this.camera.fov = width < height ? 46 : 38;
     this.camera.updateProjectionMatrix();
     this.changed = true;
   }
 
   // From the front quarter, with the feet and the way ahead in the picture.
   look() {
-    this.controls.target.set(0.35, 0, 0.55);
-    this.camera.position.set(3.5, -2.5, 1.75);
+    this.controls.target.set(0, 0, 0.6);
+    this.camera.position.set(2.9, -2.2, 1.6);
     this.controls.update();
   }
 
@@ -153,17 +166,23 @@ export class Scene {
     this.changed = true;
   }
 
-  // The camera moves with the robot and keeps the direction that the visitor chose.
+  // The camera moves with the robot, a little ahead to its goal, and keeps the direction that the visitor chose.
   move(base) {
     const [x, y] = base;
-    const before = this.base ?? [0, 0];
-    const moved = new THREE.Vector3(x - before[0], y - before[1], 0);
+    const jumped = this.base && Math.hypot(x - this.base[0], y - this.base[1]) > 0.5;
     this.base = base;
+    if (jumped) this.lead.set(0, 0, 0);
+    const wanted = this.aim ? new THREE.Vector3(this.aim[0] - x, this.aim[1] - y, 0).multiplyScalar(0.4) : new THREE.Vector3();
+    this.lead.lerp(wanted.clampLength(0, LEAD), 0.03);
+    const centre = new THREE.Vector3(x, y, 0).add(this.lead);
+    const moved = centre.clone().sub(this.centre);
+    this.centre = centre;
     this.robot?.move(base);
-    for (const one of [this.camera.position, this.controls.target, this.sun.position, this.sun.target.position]) one.add(moved);
+    for (const one of [this.camera.position, this.controls.target]) one.add(moved);
+    this.sun.target.position.set(x, y, 0);
+    this.sun.position.set(x + 1.5, y - 2.5, 4.5);
     // The floor moves along by whole tiles, so that it seems to stand still.
     this.ground.position.set(Math.round(x / (2 * TILE)) * 2 * TILE, Math.round(y / (2 * TILE)) * 2 * TILE, 0);
-    const jumped = moved.length() > 0.5;
     if (jumped) this.trailed = [];
     const last = this.trailed.at(-1);
     if (!last || Math.hypot(x - last.x, y - last.y) > TRAIL_STEP) {
@@ -181,6 +200,7 @@ export class Scene {
   }
 
   walk({ steps, goal }) {
+    this.aim = goal;
     this.goal.visible = Boolean(goal);
     if (goal) {
       this.goal.position.set(goal[0], goal[1], 0.004);
@@ -191,14 +211,24 @@ export class Scene {
       old.material.dispose();
     }
     this.footsteps.clear();
-    for (const [leg, x, y, z, yaw] of steps) {
+    for (const [leg, x, y, z, yaw, index] of steps) {
       const color = leg === LEFT ? this.colors.left : this.colors.right;
-      const mesh = new THREE.Mesh(new THREE.BoxGeometry(...SOLE), new THREE.MeshLambertMaterial({ color }));
+      const material = new THREE.MeshLambertMaterial({ color, transparent: true });
+      const mesh = new THREE.Mesh(new THREE.BoxGeometry(...SOLE), material);
+      mesh.userData.index = index;
       mesh.position.set(x + SOLE_AHEAD * Math.cos(yaw), y + SOLE_AHEAD * Math.sin(yaw), z + SOLE[2] / 2);
       mesh.rotation.z = yaw;
       mesh.receiveShadow = true;
       this.footsteps.add(mesh);
     }
+    this.taken(this.next ?? 0);
+  }
+
+  // Steps that have been taken fade; the goal is gone once the robot stands there.
+  taken(next) {
+    this.next = next;
+    for (const step of this.footsteps.children) step.material.opacity = step.userData.index < next ? 0.25 : 1;
+    if (this.footsteps.children.every((step) => step.userData.index < next)) this.goal.visible = Boolean((this.aim = null));
     this.changed = true;
   }
 
@@ -260,5 +290,18 @@ export class Scene {
     if (!this.changed) return;
     this.changed = false;
     this.renderer.render(this.scene, this.camera);
+    this.ease(performance.now());
+  }
+
+  // Without a graphics card the robot needs the processor more than its picture does.
+  ease(now) {
+    this.slow = this.rendered && now - this.rendered > SLOW ? (this.slow ?? 0) + 1 : 0;
+    this.rendered = now;
+    if (this.slow < FRAMES || this.simpler) return;
+    this.simpler = true;
+    this.sun.shadow.mapSize.set(512, 512);
+    this.sun.shadow.map?.dispose();
+    this.sun.shadow.map = null;
+    this.resize();
   }
 }

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hmac
 import json
+import socket
 import sys
 import threading
 from collections.abc import Callable, Mapping
@@ -30,6 +31,8 @@ _THREE = ("three/three.module.js", "three/three.core.js", "three/OrbitControls.j
 _OWN = ("style.css", "view.js", "scene.js", "robot.js", "panel.js", "graph.js", "hands.js")
 _FILES = {"/": "index.html", **{f"/{name}": name for name in (*_OWN, *_THREE)}}
 LOOPBACK = "127.0.0.1"
+_ANY = "0.0.0.0"
+_ELSEWHERE = ("192.0.2.1", 9)  # an address for documentation (RFC 5737): nothing is ever sent there
 _LONGEST = 4096  # bytes of a command
 _KEEP_ALIVE = 5.0  # s between comments on an idle stream, so that a closed page is noticed
 _PATIENCE = 10.0  # s for a client that sends nothing, or reads nothing
@@ -86,9 +89,10 @@ class PageServer:
 
     @property
     def url(self) -> str:
-        """The address of the page, with its token if it has one."""
+        """The address of the page, with its token if it has one; others can open it if they may."""
         query = f"?token={self.token}" if self.token else ""
-        return f"http://{self._host}:{self.port}/{query}"
+        host = _own_address() if self._host == _ANY else self._host
+        return f"http://{host}:{self.port}/{query}"
 
     @property
     def watchers(self) -> int:
@@ -129,6 +133,16 @@ class PageServer:
         """Note that a page was opened (1) or closed (-1)."""
         with self._news:
             self._streams += difference
+
+
+def _own_address() -> str:
+    """The address of this machine in its network."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect(_ELSEWHERE)  # chooses a route, without a packet
+            return str(probe.getsockname()[0])
+        except OSError:
+            return socket.gethostname()
 
 
 class _Server(ThreadingHTTPServer):

@@ -16,7 +16,10 @@ const channels = {
   time: (value) => panel.text("time", `${value.toFixed(1)} s`),
   factor: (value) => panel.text("factor", `${value.toFixed(2)}×`),
   battery: ({ charge, level }) => panel.text("battery", `${Math.round(charge * 100)} %${level === "normal" ? "" : ` ${level}`}`),
-  gait: (value) => panel.gait(value),
+  gait: (value) => {
+    panel.gait(value);
+    scene.taken(value.next);
+  },
   stop: (value) => panel.stop(value),
   run: (value) => panel.run(value),
   task: (value) => panel.job(value),

@@ -177,14 +177,12 @@ class WebView(Node):
         if real > 0 and simulated >= 0:
             self.page.show("factor", round(simulated / real, 2))
         graph = of_running(self)
-        kinds = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
-        rates = [
-            [name, kinds[name], round(self._heard[name].count() / simulated, 1) if simulated > 0 else 0.0]
-            for name in sorted(kinds)
-            if name in self._heard
-        ]
-        self.page.show("topics", rates)
         self.page.show("graph", _drawing(graph))
+        kinds = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
+        counts = {name: topic.count() for name, topic in self._heard.items()}
+        if simulated > 0:  # otherwise time stands still, or has gone back
+            rates = {name: round(count / simulated, 1) for name, count in counts.items()}
+            self.page.show("topics", [[n, kinds[n], rates[n]] for n in sorted(kinds) if n in rates])
 
     def _set_camera(self, on: bool) -> tuple[bool, str]:
         """Show the pictures of the head camera, which take time to draw, or no more."""
@@ -198,7 +196,7 @@ class WebView(Node):
             self.page.show("picture", 0)
         else:
             return True, ""
-        if self._stream.service_is_ready():  # a driver that streams only on demand
+        if on and self._stream.service_is_ready():  # off again it would make the robot blind
             value = ParameterValue(type=ParameterType.PARAMETER_BOOL, bool_value=on)
             self._stream.call_async(
                 SetParameters.Request(parameters=[Parameter(name="streaming", value=value)])

@@ -1,0 +1,91 @@
+"""The node obstacle_mapper: keeps a map of the floor from the images of the head camera."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from humanoid.data import SECOND
+from humanoid.robot.external import load_model
+from humanoid.ros import messages
+from humanoid.ros.grids import occupancy_grid
+from humanoid.ros.images import read_image, read_lens
+from humanoid.ros.running import run
+from humanoid.sensing.camera import Lens
+from humanoid.sensing.mapping import FloorMap, Viewpoints
+from nav_msgs.msg import OccupancyGrid
+from sensor_msgs.msg import CameraInfo, Image, JointState
+from tf2_msgs.msg import TFMessage
+
+from obstacle_mapper._obstacle_mapper_base import ObstacleMapperBase
+from obstacle_mapper._obstacle_mapper_parameters import ParametersError
+
+_APART = 50_000_000  # ns that image, joints and pose may be apart: the robot moves by centimetres meanwhile
+
+
+class ObstacleMapper(ObstacleMapperBase):
+    """Adds every image to the map, with the newest joints and pose."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        values = self.parameters
+        model = load_model(values.model_file, values.joint_map)
+        self._body = model.body
+        self._viewpoints = Viewpoints(model)
+        self._map = FloorMap(values.half_size, values.resolution)
+        self._lens: Lens | None = None
+        self._joints: JointState | None = None
+        self._base: Any = None  # the newest transform from odom to base_link
+        self._published: OccupancyGrid | None = None
+
+    def on_head_camera_camera_info(self, message: CameraInfo) -> None:
+        """Take the calibration."""
+        self._lens = read_lens(message)
+
+    def on_joint_states(self, message: JointState) -> None:
+        """Keep the newest joints."""
+        self._joints = message
+
+    def on_tf(self, message: TFMessage) -> None:
+        """Keep the newest pose of base_link."""
+        for transform in message.transforms:
+            if transform.child_frame_id == "base_link" and transform.header.frame_id == "odom":
+                self._base = transform
+
+    def on_head_camera_image_raw(self, message: Image) -> None:
+        """Add what the image shows, and publish the map if that changes it."""
+        lens, joints, base = self._lens, self._joints, self._base
+        if lens is None or joints is None or base is None:
+            return
+        stamp = messages.nanoseconds(message.header.stamp)
+        apart = max(abs(messages.nanoseconds(m.header.stamp) - stamp) for m in (joints, base))
+        problem = (
+            f"joints or pose are {apart / SECOND:.2f} s apart from their image" if apart > _APART else ""
+        )
+        if not problem:
+            try:
+                picture = read_image(message)
+                angles = messages.read_joint_states(joints, self._body).position
+            except ValueError as error:
+                problem = str(error)
+        if not problem and picture.shape[:2] != (lens.height, lens.width):
+            problem = "an image of another size than its calibration"
+        if problem:
+            self.get_logger().warning(f"not mapped: {problem}", throttle_duration_sec=5.0)
+            return
+        place = messages.numbers(base.transform.translation)
+        viewpoint = self._viewpoints.of(place, messages.numbers(base.transform.rotation), angles)
+        memory = round(self.parameters.memory * SECOND)
+        self._map.see(stamp, picture, lens, viewpoint, self.parameters.range, memory)
+        grid = occupancy_grid(self._map.grid, stamp)
+        if self._published is None or grid.data != self._published.data:
+            self._published = grid
+            self.publish_map(grid)
+
+
+def main(args: list[str] | None = None) -> None:
+    """Run the node."""
+    run(ObstacleMapper, args, ParametersError)
+
+
+if __name__ == "__main__":
+    main()
