@@ -99,7 +99,7 @@ def walking(quick: bool) -> list[Row]:
     rows = []
     for name, asked, options, seeds in (
         ("true state", "<= 10 mm rms", TRUE_STATE, 1),
-        ("sensors", "<= 60 mm rms", {}, 2 if quick else 6),
+        ("sensors", "<= 10 mm rms", {}, 2 if quick else 6),
     ):
         outcomes = Outcomes()
         for seed in range(seeds):
