@@ -1,14 +1,10 @@
-"""The humanoid's modules on sys.path, and a compiled model for all tests."""
+"""A compiled model for all tests of the humanoid."""
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "examples/humanoid"))
 
 if TYPE_CHECKING:
     from humanoid.robot.model import HumanoidModel

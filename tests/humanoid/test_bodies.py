@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 from humanoid.control.fitting import fitted
@@ -16,6 +18,7 @@ from humanoid.kinematics.ik import IkRequest, IkStatus, InverseKinematics
 from humanoid.kinematics.legs import Legs
 from humanoid.robot import table
 from humanoid.robot.body import OURS
+from humanoid.robot.description import describe_robot
 from humanoid.robot.external import load_external
 from humanoid.robot.joint_map import ModelError
 from humanoid.robot.model import HumanoidModel, load
@@ -128,6 +131,35 @@ def test_offset_hips_other_arms_and_no_neck(tmp_path: Path) -> None:
     assert len(reached.positions) == 7
     refused = InverseKinematics(model).solve(IkRequest("head", np.zeros(3), np.array([0, 0, 0, 1.0])))
     assert refused.message == "the robot has no head: none of its joints is in the model"
+
+
+@pytest.mark.parametrize("text", [shorter_legs(0.2), offset_hips()], ids=["shorter legs", "offset hips"])
+def test_its_description_is_the_same_robot(tmp_path: Path, text: str) -> None:
+    model = loaded(
+        tmp_path, text.replace('<joint name="l_knee"', '<joint name="l_knee" pos="0.004 0.0 -0.003"')
+    )
+    described = describe_robot(model)
+    options = '<mujoco><compiler fusestatic="false" discardvisual="false"/></mujoco>'
+    theirs = mujoco.MjModel.from_xml_string(re.sub("(<robot[^>]*>)", rf"\1{options}", described))
+    assert {theirs.joint(number).name for number in range(theirs.njnt)} == set(model.body.joints)
+    assert abs(theirs.body_mass.sum() - model.mass) < 1e-6
+    ours, data = model.data(), mujoco.MjData(theirs)
+    random = np.random.default_rng(0)
+    for _ in range(20):
+        joints = random.uniform(model.body.lower, model.body.upper)
+        ours.qpos[:7] = (0, 0, 0, 1, 0, 0, 0)
+        ours.qpos[model.qpos] = joints
+        for name, angle in zip(model.body.joints, joints, strict=True):
+            data.joint(name).qpos[0] = angle
+        mujoco.mj_kinematics(model.mj, ours)
+        mujoco.mj_kinematics(theirs, data)
+        mujoco.mj_comPos(model.mj, ours)
+        mujoco.mj_comPos(theirs, data)
+        for name in ("l_sole", "r_sole", "l_gripper", "imu_link"):
+            site = model.frames[name]
+            assert np.abs(data.body(name).xpos - ours.site_xpos[site]).max() < 1e-9
+            assert np.abs(data.body(name).xmat - ours.site_xmat[site]).max() < 1e-9
+        assert np.abs(data.subtree_com[0] - ours.subtree_com[model.base]).max() < 1e-9
 
 
 @pytest.mark.slow

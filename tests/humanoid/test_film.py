@@ -148,6 +148,18 @@ def test_pictures_become_files(tmp_path: Path) -> None:
             save([], tmp_path / "none", 100)
 
 
+def test_rare_colours_keep_their_places_in_an_animation(tmp_path: Path) -> None:
+    """Thousands of greys, and in one picture a small red arrow."""
+    greys = np.arange(HEIGHT * WIDTH, dtype=np.int64) * 7919 % 251
+    pale = np.repeat(greys.astype(np.uint8), 3).reshape(HEIGHT, WIDTH, 3)
+    marked = pale.copy()
+    marked[10:20, 10:20] = 240, 30, 50
+    pictures.save_gif([pale, marked], tmp_path / "a.gif", 100)
+    with Image.open(tmp_path / "a.gif") as image:
+        image.seek(1)
+        assert np.abs(np.asarray(image.convert("RGB"))[15, 15].astype(int) - (240, 30, 50)).max() < 12
+
+
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not on PATH")
 def test_ffmpeg_makes_a_film_of_them(tmp_path: Path) -> None:
     shades = [np.full((HEIGHT, WIDTH, 3), shade, dtype=np.uint8) for shade in range(10, 250, 24)]

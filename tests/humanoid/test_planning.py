@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from humanoid.data import SECOND, GaitState, JointStates, Leg, Mode, Stance, Support
+from humanoid.data import SECOND, STOP_CALLED, GaitState, JointStates, Leg, Mode, Stance, Support
 from humanoid.planning import dance
 from humanoid.planning.choreography import DANCES
 from humanoid.planning.events import Event, event_of
@@ -130,6 +130,38 @@ def test_navigation_ends_with_the_robot(mode: Mode, outcome: Outcome) -> None:
     result = navigation.update(_gait(mode, "why", 2 * SECOND)).result
     assert result is not None
     assert (result.outcome, result.time) == (outcome, 2.0)
+
+
+def test_navigation_goes_on_after_the_robot_has_held() -> None:
+    navigation = Navigation((1.0, 0.0, 0.0), _gait(), recovery_time=5.0)
+    assert navigation.update(_gait()).plan is not None
+    tick = navigation.update(_gait(Mode.HOLDING, "no odometry", 2 * SECOND))
+    assert (tick.stop, tick.plan, tick.result, tick.feedback.replanning) == (True, None, None, True)
+    tick = navigation.update(_gait(stamp=3 * SECOND))
+    assert tick.plan is not None
+    assert (tick.stop, tick.result) == (False, None)
+    # It is asked for the second time, and for too long.
+    assert navigation.update(_gait(Mode.HOLDING, "no odometry", 4 * SECOND)).result is None
+    assert navigation.update(_gait(Mode.HOLDING, "no odometry", 8 * SECOND)).result is None
+    result = navigation.update(_gait(Mode.HOLDING, "no odometry", 9 * SECOND)).result
+    assert result is not None
+    assert (result.outcome, result.message) == (Outcome.STOPPED, "no odometry")
+
+
+def test_navigation_does_not_wait_where_the_robot_was_asked_to_stop() -> None:
+    navigation = Navigation((1.0, 0.0, 0.0), _gait(), recovery_time=5.0)
+    result = navigation.update(_gait(Mode.HOLDING, STOP_CALLED)).result
+    assert result is not None
+    assert result.outcome is Outcome.STOPPED
+
+
+def test_navigation_is_canceled_while_the_robot_holds() -> None:
+    navigation = Navigation((1.0, 0.0, 0.0), _gait(), recovery_time=5.0)
+    assert navigation.update(_gait(Mode.HOLDING, "no odometry")).result is None
+    navigation.cancel()
+    result = navigation.update(_gait(Mode.HOLDING, "no odometry")).result
+    assert result is not None
+    assert result.outcome is Outcome.CANCELED
 
 
 def test_navigation_already_there_is_reached_at_once() -> None:

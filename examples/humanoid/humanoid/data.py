@@ -15,6 +15,8 @@ import numpy as np
 from .spatial import Array
 
 SECOND = 1_000_000_000
+STOP_CALLED = "somebody called ~/stop"
+"""The reason of a controller that holds because it was asked to: it waits for new footsteps."""
 STEP_TIME = 0.6  # seconds from lift-off to touchdown, unless another time is requested
 
 

@@ -11,6 +11,8 @@ from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid import data
 from humanoid.control.posture import start
 from humanoid.robot import table
+from humanoid.robot.body import OURS
+from humanoid.robot.description import describe_robot
 from humanoid.robot.external import load_model
 from humanoid.robot.obstacles import Solid, random_solids, solids_of
 from humanoid.robot.urdf import write_urdf
@@ -64,7 +66,9 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._blind = False  # no image can be drawn here
         self._losses = generator(self.parameters.seed, "camera")
         self._begin()
-        self.publish_robot_description(String(data=write_urdf()))
+        self.publish_robot_description(
+            String(data=write_urdf() if self._model.body is OURS else describe_robot(self._model))
+        )
         self.publish_tf_static(TFMessage(transforms=[_identity("map", "odom")]))
 
     def destroy_node(self) -> None:

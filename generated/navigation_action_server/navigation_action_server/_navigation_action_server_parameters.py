@@ -63,6 +63,12 @@ class NavigationActionServerParameters:
 
     Must be from 0.01 to 0.5.
     """
+    recovery_time: float
+    """How long to wait for a robot that holds, because readings or a node are missing, before the goal is
+    given up [s]; 0 gives up at once
+
+    Must be from 0.0 to 60.0.
+    """
     tolerance: ToleranceParameters
     """The parameters `tolerance.*`."""
     service_timeout: float
@@ -109,6 +115,7 @@ def read_parameters(node: Node) -> NavigationActionServerParameters:
         joint_map=values["joint_map"],
         second_goal=values["second_goal"],
         replan_distance=values["replan_distance"],
+        recovery_time=values["recovery_time"],
         tolerance=ToleranceParameters(
             position=values["tolerance.position"],
             yaw=values["tolerance.yaw"],
@@ -197,6 +204,16 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ),
         ),
         (
+            "recovery_time",
+            Parameter.Type.DOUBLE,
+            5.0,
+            ParameterDescriptor(
+                description="How long to wait for a robot that holds, because readings or a node are missing, before the goal is given up [s]; 0 gives up at once",
+                additional_constraints="must be from 0.0 to 60.0",
+                floating_point_range=[FloatingPointRange(from_value=0.0, to_value=60.0)],
+            ),
+        ),
+        (
             "tolerance.position",
             Parameter.Type.DOUBLE,
             0.03,
@@ -238,6 +255,9 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "replan_distance": (
         (lambda value: 0.01 <= value <= 0.5, "must be from 0.01 to 0.5"),
+    ),
+    "recovery_time": (
+        (lambda value: 0.0 <= value <= 60.0, "must be from 0.0 to 60.0"),
     ),
     "tolerance.position": (
         (lambda value: 0.005 <= value <= 0.5, "must be from 0.005 to 0.5"),

@@ -55,6 +55,7 @@ class NavigationActionServer(NavigationActionServerBase):
             walk.navigation.cancel()
         self._tick = tick = walk.navigation.update(self._gait)
         if tick.plan is not None:
+            walk.stopping = False  # it has held, and goes on
             self._send(tick.plan)
         elif tick.stop and not walk.stopping:
             walk.stopping = True
@@ -103,6 +104,7 @@ class NavigationActionServer(NavigationActionServerBase):
                 goal.yaw_tolerance or values.tolerance.yaw,
             ),
             replan_distance=values.replan_distance,
+            recovery_time=values.recovery_time,
         )
         if navigation.rejection:
             return self._refuse(goal_handle, navigation.rejection)

@@ -768,6 +768,15 @@ PARAMETERS = [
         range=(0.01, 0.5),
     ),
     ParameterCase(
+        "recovery_time",
+        Parameter.Type.DOUBLE,
+        5.0,
+        [5.0, 0.0, 60.0, 30.0, 0.001, 58.8],
+        [-0.001, 61.2],
+        description="How long to wait for a robot that holds, because readings or a node are missing, before the goal is given up [s]; 0 gives up at once",
+        range=(0.0, 60.0),
+    ),
+    ParameterCase(
         "tolerance.position",
         Parameter.Type.DOUBLE,
         0.03,

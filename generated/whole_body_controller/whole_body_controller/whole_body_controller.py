@@ -30,7 +30,6 @@ _STATE_PERIOD = 20_000_000  # ns between gait states while nothing in them chang
 _BALANCE_PERIOD = 40_000_000  # ns between messages about the balance, while somebody wants them
 _LATE = 3  # readings, or control periods, after which the controller uses what it has
 _POSTURE_LEASE = 500_000_000  # ns that a posture is valid: a dance sends one 50 times a second
-_STOPPED = "somebody called ~/stop"
 _HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP}
 
 
@@ -130,7 +129,7 @@ class WholeBodyController(WholeBodyControllerBase):
     def handle_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """End the step in the air and stand until new footsteps arrive."""
         self._stopped = True
-        self._controller.hold(_STOPPED)
+        self._controller.hold(data.STOP_CALLED)
         response.success = True
         return response
 

@@ -61,7 +61,10 @@ def test_the_robot_does_what_visitors_want(
     why = "emergency stop: the button was pressed"
     assert visitor.ask(do="walk", x=1.0, y=0.0, yaw=0.0) == (False, why)
 
-    # Everything starts again: also the stop is released.
+    # Everything starts again, also for a robot that lies on the floor: the stop is released.
+    assert visitor.ask(do="push", x=-60.0, y=0.0)[0]
+    robot.until(lambda: robot.mode is Mode.FALLEN)
+    robot.run(0.5)
     assert visitor.ask(do="restart", scenario="") == (True, "time starts again")
     robot.until(lambda: robot.mode is Mode.STANDING)
     assert robot.now < 5
@@ -105,7 +108,15 @@ REFUSED: Mapping[str, tuple[dict[str, Any], str]] = {
     ),
     "words": ({"do": "say", "words": "fly"}, "'fly' is not a task: say "),
     "silence": ({"do": "say", "words": " "}, "say something, with at most 200 characters"),
-    "scenario": ({"do": "restart", "scenario": "../walk"}, "there is no scenario '../walk'"),
+    "scenario": (
+        {"do": "restart", "scenario": "../walk"},
+        "there is no scenario '../walk': choose one of all, ",
+    ),
+    "setup": (
+        {"do": "restart", "scenario": "obstacles"},
+        "it sets up humanoid_simulator: start it with `ifgen demo",
+    ),
+    "obstacle": ({"do": "move", "name": "tree", "x": 1, "y": 0}, "there is no obstacle 'tree'"),
     "speed": ({"do": "speed", "factor": -1}, "a speed is not negative; 0 is as fast as possible"),
     "unknown": ({"do": "explode"}, "there is no command 'explode'"),
     "odd": ({"do": []}, "there is no command []"),

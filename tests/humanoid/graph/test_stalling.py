@@ -46,7 +46,7 @@ def test_lost_readings_and_commands_do_no_harm(make_robot: MakeRobot, seed: int)
 
 
 def test_after_a_stall_of_commands_everybody_knows_and_the_robot_walks_again(make_robot: MakeRobot) -> None:
-    robot = make_robot(*WALKING)
+    robot = make_robot(*WALKING, navigation_action_server={"recovery_time": 0.0})
     robot.run(1.0)
     goal = robot.send(walk(1.0))
     robot.until(lambda: robot.gait.footstep_index >= 2)
@@ -62,6 +62,26 @@ def test_after_a_stall_of_commands_everybody_knows_and_the_robot_walks_again(mak
     assert robot.standby == ""
     status, _ = robot.result(robot.send(walk(0.4, 0.2)))
     assert status == GoalStatus.STATUS_SUCCEEDED
+    assert not robot.fell
+
+
+@pytest.mark.slow
+def test_a_walk_goes_on_after_stalls(make_robot: MakeRobot) -> None:
+    robot = make_robot(*WALKING)
+    robot.run(1.0)
+    goal = robot.send(walk(1.0))
+    held = []
+    controller = robot.nodes["whole_body_controller"]
+    for step in (2, 4):
+        robot.until(lambda step=step: robot.gait.footstep_index >= step)
+        resume = lose(controller, "publish_whole_body_position_controller_commands", lambda: True)
+        robot.run(0.2)
+        resume()
+        robot.until(lambda: robot.mode is Mode.HOLDING)
+        held.append(robot.gait.reason)
+    status, result = robot.result(goal)
+    assert status == GoalStatus.STATUS_SUCCEEDED, result.message
+    assert all("no good command" in reason for reason in held)
     assert not robot.fell
 
 

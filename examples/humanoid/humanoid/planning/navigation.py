@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..data import SECOND, FootstepPlan, GaitState, Leg, Mode, Stance, Support
+from ..data import SECOND, STOP_CALLED, FootstepPlan, GaitState, Leg, Mode, Stance, Support
 from ..robot.ground import Ground
 from ..spatial import Array, wrap
 from .footsteps import PlanResult, PlanStatus, StepLimits, plan_footsteps
@@ -18,6 +18,7 @@ _MOST_ROUNDS = 3  # plans that are made after the robot has come to a stand outs
 _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
 _STOPPED = {Mode.HOLDING, Mode.EMERGENCY_STOP}
 _PATIENCE = 2 * SECOND  # ns within which the robot must begin to walk a plan
+_MOST_RECOVERIES = 20  # a robot that holds more often than that in a walk has a lasting problem
 _NOT_BEGUN = "nobody walks the plan: gait_planner is silent, or the plan was refused"
 
 
@@ -83,7 +84,7 @@ class WalkTick:
 class Navigation:
     """A goal under way. `rejection` says why it must not be accepted, or is ""."""
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  # each is a parameter of the node, or of the goal
         self,
         goal: tuple[float, float, float],
         gait: GaitState,
@@ -93,10 +94,13 @@ class Navigation:
         ground: Ground | None = None,
         tolerance: GoalTolerance | None = None,
         replan_distance: float = 0.05,
+        recovery_time: float = 0.0,
     ) -> None:
         """Plan for a goal; `under_way` is the plan that the robot follows now, if it walks.
 
         The remaining steps are planned anew once a sole has landed `replan_distance` [m] from its place.
+        A robot that has to hold, because readings or a node are missing, is awaited for `recovery_time` [s],
+        and walks on from where it is then.
         """
         self.goal = goal
         self._limits = limits or StepLimits()
@@ -107,6 +111,9 @@ class Navigation:
         self._checked = self._seen = gait.footstep_index
         self._planned = gait.stamp  # when the last new plan was made
         self._rounds = 0
+        self._recovery = round(recovery_time * SECOND)
+        self._recoveries = 0
+        self._held: int | None = None  # since when the robot has held
         self._cancelled = self._preempted = False
         self._plan = under_way or FootstepPlan(0, (), goal)
         self._news: FootstepPlan | None = None
@@ -144,14 +151,18 @@ class Navigation:
             result = self.stopped(gait, "whole_body_controller has restarted")
         elif gait.mode is Mode.FALLEN:
             result = self._result(Outcome.FELL, "the robot has fallen", gait)
-        elif gait.mode in _STOPPED:
+        elif gait.mode in _STOPPED and not self._recovers(gait):
             result = self.stopped(gait, gait.reason)
         elif self._preempted:
             result = self._result(Outcome.PREEMPTED, "a later goal took over", gait)
         elif self._cancelled:
             stop, plan = True, None
-            if gait.mode is Mode.STANDING:
+            if gait.mode in (Mode.STANDING, Mode.HOLDING):
                 result = self._result(Outcome.CANCELED, "canceled", gait)
+        elif gait.mode is Mode.HOLDING:
+            stop, plan = True, None
+        elif self._held is not None:
+            plan, result = self._go_on(gait)
         elif plan is None and gait.mode is Mode.STANDING and self._waiting(gait):
             if gait.stamp - self._planned > _PATIENCE:
                 result = self.stopped(gait, _NOT_BEGUN)
@@ -163,7 +174,29 @@ class Navigation:
                 plan = self._plan = again.plan
         if plan is not None:
             self._planned = gait.stamp
-        return WalkTick(plan, stop, self._feedback(gait, plan is not None), result)
+        return WalkTick(plan, stop, self._feedback(gait, plan is not None or self._held is not None), result)
+
+    def _recovers(self, gait: GaitState) -> bool:
+        """Whether a robot that has stopped may yet walk on by itself."""
+        if gait.mode is not Mode.HOLDING or gait.reason == STOP_CALLED:
+            return False
+        if self._held is None:
+            self._held = gait.stamp
+            self._recoveries += 1
+        return gait.stamp - self._held < self._recovery and self._recoveries <= _MOST_RECOVERIES
+
+    def _go_on(self, gait: GaitState) -> tuple[FootstepPlan | None, WalkResult | None]:
+        """Walk on after holding, once the robot stands."""
+        if gait.mode is not Mode.STANDING:
+            return None, None
+        self._held = None
+        result = self._plan_from(gait)
+        if result.status is PlanStatus.PLANNED:
+            self._plan = result.plan
+            return result.plan, None
+        if result.status is PlanStatus.ALREADY_THERE:
+            return self._arrived(gait)
+        return None, self._result(Outcome.UNREACHABLE, result.message, gait)
 
     def _waiting(self, gait: GaitState) -> bool:
         """Whether the robot stands only because it has not yet begun to walk the plan."""

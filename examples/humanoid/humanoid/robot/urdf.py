@@ -16,7 +16,7 @@ from ..spatial import Array
 from . import table
 from .xmltext import add, document
 
-_TOP_SPEED = 20.0  # rad/s; URDF requires one
+TOP_SPEED = 20.0  # rad/s; URDF requires one
 
 
 def write_urdf() -> str:
@@ -29,7 +29,7 @@ def write_urdf() -> str:
             _place(joint, link.parent, link.name, link.origin)
             add(joint, "axis", xyz=link.joint.axis)
             limits = {"lower": link.joint.lower, "upper": link.joint.upper, "effort": link.joint.effort}
-            add(joint, "limit", velocity=_TOP_SPEED, **limits)
+            add(joint, "limit", velocity=TOP_SPEED, **limits)
             add(joint, "dynamics", damping=0.3, friction=0.05)
     for frame in table.FRAMES:
         add(root, "link", name=frame.name)
@@ -59,11 +59,11 @@ def _link(root: ElementTree.Element, link: table.Link) -> None:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertia.tolist()
     add(inertial, "inertia", ixx=xx, ixy=xy, ixz=xz, iyy=yy, iyz=yz, izz=zz)
     for shape in link.shapes:
-        for part in _looks(shape):
-            _geometry(_coloured(element, part), part)
+        for part in looks(shape):
+            geometry(_coloured(element, part), part)
         collision = add(element, "collision")
         add(collision, "origin", xyz=shape.position, rpy=(0.0, 0.0, 0.0))
-        _geometry(add(collision, "geometry"), shape)
+        geometry(add(collision, "geometry"), shape)
 
 
 def _coloured(link: ElementTree.Element, shape: table.Shape) -> ElementTree.Element:
@@ -76,7 +76,7 @@ def _coloured(link: ElementTree.Element, shape: table.Shape) -> ElementTree.Elem
     return geometry
 
 
-def _looks(shape: table.Shape) -> list[table.Shape]:
+def looks(shape: table.Shape) -> list[table.Shape]:
     """The shapes to show for one: a capsule with its round ends, a row of spheres for an ellipsoid."""
     axis = int(np.argmax(shape.size))
     if shape.kind == "capsule":
@@ -93,7 +93,7 @@ def _looks(shape: table.Shape) -> list[table.Shape]:
     return ends if shape.kind == "ellipsoid" else [shape, *ends]
 
 
-def _geometry(parent: ElementTree.Element, shape: table.Shape) -> None:
+def geometry(parent: ElementTree.Element, shape: table.Shape) -> None:
     """A shape without its position. An ellipsoid becomes a sphere with the radius of its middle half axis."""
     if shape.kind == "box":
         add(parent, "box", size=tuple(2 * half for half in shape.size))

@@ -183,7 +183,7 @@ class _Show:
         try:
             for _ in self._turns():
                 if self._director.is_over and not self._options.idle:
-                    problem = "; ".join(self._director.score.failures)
+                    problem = "; ".join(dict.fromkeys(self._director.score.failures))
                     break
             else:
                 problem = f"not over after {_LIMIT:.0f} s"
@@ -313,7 +313,7 @@ def _serve(options: Options, audience: Audience) -> Node:
     host, port = options.host or LOOPBACK, options.web or 0
     token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port, host, token, audience)
+        view = WebView(port, host, token, audience, "" if options.idle else options.scenario)
     except OSError as error:
         sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)

@@ -28,6 +28,7 @@ from .audience import PUSH_TIME
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _TASKS = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+_ASTRAY = 0.08  # m from its goal at which a walk has failed, whatever the robot believes
 _LYING = 0.45  # m of base_link above the floor
 _LOOK = 0.1  # s of simulated time between checks that everything is over
 _LAST = 1.0  # s of simulated time from then until the end
@@ -157,6 +158,9 @@ class Director(Node):
             error = self.distance_to(float(x), float(y))
             if math.isfinite(error):
                 self.score.goal_errors.append(error)
+                if error > _ASTRAY:
+                    words = f"it ended {error * 1e3:.0f} mm from its goal, more than {_ASTRAY * 1e3:.0f}"
+                    self.score.failures.append(f"{message.words}: {words}")
             self._say(f"arrived with {message.message}, {error * 1e3:.0f} mm off")
         elif kind == "dance":
             self.score.dances += 1

@@ -29,8 +29,8 @@ _CLIP, _FOG_BEGINS, _FOG_ENDS = 1.4, 3.0, 9.0
 _HORIZON = (0.90, 0.93, 0.96, 1.0)
 _GOAL = np.array([0.16, 0.55, 0.95, 0.75], dtype=np.float32)
 _GOAL_RADIUS, _POINTER = 0.16, 0.30  # m
-_PUSH = np.array([0.93, 0.22, 0.18, 1.0], dtype=np.float32)
-_ARROW = 0.006  # m for each N
+_PUSH = np.array([0.95, 0.12, 0.20, 1.0], dtype=np.float32)
+_ARROW = 0.012  # m for each N
 _CHEST = 1.05  # m, where arrows end
 
 
@@ -182,5 +182,5 @@ def _draw_push(scene: Any, at: Array, push: tuple[float, float]) -> None:
     geom = scene.geoms[scene.ngeom]
     kind = mujoco.mjtGeom.mjGEOM_ARROW
     mujoco.mjv_initGeom(geom, kind, np.zeros(3), np.zeros(3), np.eye(3).flatten(), _PUSH)
-    mujoco.mjv_connector(geom, kind, 0.03, end - length * way, end)
+    mujoco.mjv_connector(geom, kind, 0.035, end - length * way, end)
     scene.ngeom += 1

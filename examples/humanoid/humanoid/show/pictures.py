@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,8 @@ from ..simulation.rendering import Picture, RenderingError, image
 
 _INK, _PAPER = (255, 255, 255), (28, 33, 40)
 _LINE = 0.062  # height of the letters, as a share of that of the picture
-_COLOURS = 64
+_COLOURS, _BRIGHT_COLOURS = 40, 12
+_BRIGHT = 90  # difference of the greatest and the least part of a colour
 _SAMPLES = 16  # pictures that a palette is made of
 _FFMPEG = (
     *("ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"),
@@ -60,12 +62,28 @@ def save_gif(pictures: Sequence[Picture], path: Path, frame_time: int) -> None:
     if not pictures:
         raise RenderingError("there is no picture to make an animation of")
     pillow = image()
-    # One palette for all pictures: otherwise colours flicker, and the file is larger. Footsteps are small
-    # and not in all of them, so it takes many pictures to include their colours.
-    samples = [picture[::2, ::2] for picture in pictures[:: max(1, len(pictures) // _SAMPLES)]]
-    palette = pillow.fromarray(np.concatenate(samples)).quantize(_COLOURS)
+    palette = _palette(pillow, pictures[:: max(1, len(pictures) // _SAMPLES)])
     frames = [pillow.fromarray(picture).quantize(palette=palette, dither=0) for picture in pictures]
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=frame_time, loop=0)
+
+
+def _palette(pillow: ModuleType, pictures: Sequence[Picture]) -> Any:
+    """Return one palette for all pictures: otherwise colours flicker, and the file is larger.
+
+    Footsteps and arrows are small, so the bright colours have places of their own.
+    """
+    pixels = np.concatenate([picture[::2, ::2].reshape(-1, 3) for picture in pictures])
+    bright = pixels[np.ptp(pixels.astype(np.int16), axis=1) > _BRIGHT]
+    colours: list[int] = []
+    often, rare = pillow.Quantize.MEDIANCUT, pillow.Quantize.MAXCOVERAGE
+    parts = ((pixels, _COLOURS, often), (bright, _BRIGHT_COLOURS, often), (bright, _BRIGHT_COLOURS, rare))
+    for some, count, method in parts:
+        if len(some):
+            found = pillow.fromarray(some[None]).quantize(count, method).getpalette() or []
+            colours += found[: 3 * count]
+    palette = pillow.new("P", (1, 1))
+    palette.putpalette(colours)
+    return palette
 
 
 def save_mp4(pictures: Iterable[Picture], path: Path, frame_time: int) -> None:

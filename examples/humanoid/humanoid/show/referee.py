@@ -53,7 +53,7 @@ def main(args: list[str] | None = None) -> int:
     real = time.monotonic() - (started or time.monotonic())
     failures = director.score.failures + ([] if director.is_over else ["interrupted"])
     simulated = director.now - (director.begun or 0.0)
-    outcome = "; ".join(failures) or "done"
+    outcome = "; ".join(dict.fromkeys(failures)) or "done"
     name = Path(names[0]).stem
     report.show(report.summary(name, outcome, simulated, max(real, 1e-3), director.score))
     sys.stdout.flush()

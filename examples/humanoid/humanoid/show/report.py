@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+import textwrap
 import time
 
 from ..data import Mode
@@ -85,8 +86,12 @@ def summary(scenario: str, outcome: str, simulated: float, real: float, score: S
 
 
 def show(rows: dict[str, str]) -> None:
-    """Print rows, their values below each other."""
+    """Print rows, their values below each other, in the width of the terminal."""
     width = max(map(len, rows))
+    room = max(shutil.get_terminal_size().columns - width - 5, 20)
     print()
     for name, value in rows.items():
-        print(f"  {name:{width}}  {value}")
+        first, *others = textwrap.wrap(value, room) or [""]
+        print(f"  {name:{width}}  {first}")
+        for line in others:
+            print(f"  {'':{width}}  {line}")

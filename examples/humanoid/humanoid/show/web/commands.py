@@ -6,11 +6,13 @@ import math
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from action_msgs.srv import CancelGoal
-from geometry_msgs.msg import Vector3, Wrench, WrenchStamped
+from geometry_msgs.msg import Point, Vector3, Wrench, WrenchStamped
 from humanoid_interfaces.action import PerformDance, WalkTo
+from humanoid_interfaces.msg import ObstacleMotion
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rclpy.action import ActionClient
@@ -24,7 +26,7 @@ from ...planning.choreography import DANCES
 from ...planning.tasks import task_of
 from ...ros import messages
 from ..audience import PUSH_TIME, Audience
-from ..scenarios import ScenarioFileError, read
+from ..scenarios import ScenarioFileError, names, read
 
 Answer = Callable[[bool, str], None]
 
@@ -47,13 +49,16 @@ class Refusal(ValueError):
 class Commands:
     """Does commands with a node's clients and publishers, always in the node's thread.
 
-    `why` returns what a node has last warned of, and `audience` plays the events of scenarios. Calls that
-    take a while are answered later.
+    `why` returns what a node has last warned of. `audience` plays the events of scenarios; `scenario` is the
+    name or the file of the one that the robot was started with. Calls that take a while are answered later.
     """
 
-    def __init__(self, node: Node, why: Callable[[str], str], audience: Audience | None = None) -> None:
+    def __init__(
+        self, node: Node, why: Callable[[str], str], audience: Audience | None = None, scenario: str = ""
+    ) -> None:
         self._why = why
         self._audience = audience
+        self._started = scenario
         self._walk_to = ActionClient(node, WalkTo, "/walk_to")
         self._perform_dance = ActionClient(node, PerformDance, "/perform_dance")
         self._cancels = {
@@ -66,17 +71,20 @@ class Commands:
         self._reset = node.create_client(Trigger, "/humanoid_simulator/reset")
         self._set = node.create_client(SetParameters, "/humanoid_simulator/set_parameters")
         self._push = node.create_publisher(WrenchStamped, "/humanoid_simulator/push", 10)
+        self._move = node.create_publisher(ObstacleMotion, "/humanoid_simulator/move_obstacle", 10)
         self._speech = node.create_publisher(String, "/speech/text", 10)
         self._joy = node.create_publisher(Joy, "/joy", _NEWEST)
         self._later: list[tuple[float, Callable[[], None]]] = []
         self._rounds = 0  # control periods that are still to be stepped
         self.paused = False
         self.speed = 1.0
+        self.obstacles: list[str] = []  # their names
         self.task = 0  # the number of the robot's last task
         self._acts: Mapping[Any, Callable[[Mapping[str, Any], Answer], None]] = {
             "walk": self._on_walk,
             "dance": self._on_dance,
             "push": self._on_push,
+            "move": self._on_move,
             "say": self._on_say,
             "drive": self._on_drive,
             "cancel": self._on_cancel,
@@ -133,6 +141,14 @@ class Commands:
         force = Vector3(x=x / PUSH_TIME, y=y / PUSH_TIME)
         self._push.publish(WrenchStamped(wrench=Wrench(force=force)))
         answer(True, f"pushed with {math.hypot(x, y):.1f} N s")
+
+    def _on_move(self, asked: Mapping[str, Any], answer: Answer) -> None:
+        name = asked.get("name")
+        if name not in self.obstacles:
+            raise Refusal(f"there is no obstacle {name!r}")
+        x, y = _number(asked, "x", _FARTHEST), _number(asked, "y", _FARTHEST)
+        self._move.publish(ObstacleMotion(name=name, position=Point(x=x, y=y)))
+        answer(True, f"{name} is moved to ({x:.2f} m, {y:.2f} m)")
 
     def _on_say(self, asked: Mapping[str, Any], answer: Answer) -> None:
         words = asked.get("words")
@@ -206,20 +222,24 @@ class Commands:
         for client in self._cancels.values():
             if client.service_is_ready():
                 client.call_async(CancelGoal.Request())
-        released = self._stop.call_async(SetBool.Request(data=False))
+        if self.paused:
+            self.paused = False
+            self._pause.call_async(SetBool.Request(data=False))
+        said = f"time starts again, with {name}" if name else "time starts again"
 
         def begin(_: Any) -> None:
-            if self.paused:
-                self.paused = False
-                self._pause.call_async(SetBool.Request(data=False))
+            self._play(tasks, events)
+            answer(True, said)
+
+        def release() -> None:
+            # Only now: while a robot lies on the floor, nobody can release the stop.
+            self._stop.call_async(SetBool.Request(data=False)).add_done_callback(begin)
+
+        def wait(_: Any) -> None:
             # Everybody has to notice first that time has gone back.
-            self._later.append((time.monotonic() + _NOTICED, partial(self._play, tasks, events)))
-            answer(True, f"time starts again, with {name}" if name else "time starts again")
+            self._later.append((time.monotonic() + _NOTICED, release))
 
-        def reset(_: Any) -> None:
-            self._reset.call_async(Trigger.Request()).add_done_callback(begin)
-
-        released.add_done_callback(reset)
+        self._reset.call_async(Trigger.Request()).add_done_callback(wait)
 
     def _play(self, tasks: list[str], events: list[str]) -> None:
         """Give the robot tasks, and the audience its events; the robot stands up first, for a second."""
@@ -230,13 +250,14 @@ class Commands:
 
     def _scenario(self, name: object) -> tuple[list[str], list[str]]:
         """Tasks and events of a scenario."""
-        if not isinstance(name, str) or "/" in name or name.endswith((".yaml", ".yml")):
-            raise Refusal(f"there is no scenario {name!r}")
+        is_first = bool(self._started) and name == Path(self._started).stem
+        if not isinstance(name, str) or not (is_first or name in names()):
+            raise Refusal(f"there is no scenario {name!r}: choose one of {', '.join(names())}")
         try:
-            nodes = read(name)
+            nodes = read(self._started if is_first else name)
         except ScenarioFileError as error:
             raise Refusal(str(error)) from None
-        if others := set(nodes) - set(_OURS):
+        if not is_first and (others := set(nodes) - set(_OURS)):
             raise Refusal(
                 f"it sets up {', '.join(sorted(others))}: start it with `ifgen demo --web --scenario {name}`"
             )

@@ -40,7 +40,7 @@ export async function command(what, quiet = false) {
   }
 }
 
-// A finger or the mouse on the picture: click the floor, or drag an arrow from the robot.
+// A finger or the mouse on the picture: click the floor, drag an arrow from the robot, or drag an obstacle.
 export class Pointer {
   constructor(scene) {
     this.scene = scene;
@@ -72,9 +72,12 @@ export class Pointer {
     this.aim(event);
     this.start = [event.clientX, event.clientY];
     const { robot, base } = this.scene;
-    this.pushing = Boolean(robot && base && this.ray.intersectObject(robot, true).length);
-    this.scene.controls.enabled = !this.pushing;
-    if (this.pushing) this.scene.canvas.setPointerCapture(event.pointerId);
+    const things = robot && base ? [robot, ...this.scene.obstacles.children] : [];
+    const hit = this.ray.intersectObjects(things, true)[0]?.object;
+    this.moving = this.scene.obstacles.children.includes(hit) ? hit : null;
+    this.pushing = Boolean(hit && !this.moving);
+    this.scene.controls.enabled = !hit;
+    if (hit) this.scene.canvas.setPointerCapture(event.pointerId);
   }
 
   move(event) {
@@ -82,6 +85,12 @@ export class Pointer {
     const { scene } = this;
     if (this.pushing) {
       this.momentum = this.arrow();
+      return;
+    }
+    if (this.moving) {
+      const place = this.at(0);
+      if (place) [this.moving.position.x, this.moving.position.y] = [place.x, place.y];
+      scene.changed = true;
       return;
     }
     const point = event.pointerType === "mouse" && !event.buttons ? this.at(0) : null;
@@ -118,7 +127,10 @@ export class Pointer {
     this.aim(event);
     if (this.pushing && this.momentum) {
       command({ do: "push", x: this.momentum[0], y: this.momentum[1] });
-    } else if (!this.pushing && moved < CLICK) {
+    } else if (this.moving && moved >= CLICK) {
+      const { x, y } = this.moving.position;
+      command({ do: "move", name: this.moving.name, x, y });
+    } else if (!this.pushing && !this.moving && moved < CLICK) {
       const point = this.at(0);
       if (point) this.walk(point);
     }
@@ -134,7 +146,7 @@ export class Pointer {
   }
 
   leave() {
-    this.start = this.momentum = null;
+    this.start = this.momentum = this.moving = null;
     this.pushing = this.scene.hover.visible = this.scene.push.visible = false;
     this.scene.controls.enabled = this.scene.changed = true;
   }

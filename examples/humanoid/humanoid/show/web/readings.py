@@ -157,6 +157,7 @@ def _map(message: OccupancyGrid) -> dict[str, Any] | None:
 def _obstacles(message: MarkerArray) -> list[dict[str, Any]]:
     return [
         {
+            "name": marker.ns,
             "shape": _SHAPES[marker.type],
             "at": rounded(marker.pose.position.x, marker.pose.position.y, marker.pose.position.z),
             "yaw": round(yaw_of(marker.pose.orientation), 4),

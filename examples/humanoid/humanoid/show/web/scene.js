@@ -267,7 +267,7 @@ export class Scene {
 
   things(list) {
     this.obstacles.clear();
-    for (const { shape, at, yaw, size, color } of list) {
+    for (const { name, shape, at, yaw, size, color } of list) {
       const geometry =
         shape === "box"
           ? new THREE.BoxGeometry(...size)
@@ -276,6 +276,7 @@ export class Scene {
             : new THREE.CylinderGeometry(size[0] / 2, size[0] / 2, size[2], 32).rotateX(Math.PI / 2);
       const material = new THREE.MeshLambertMaterial({ color: new THREE.Color().setRGB(...color, THREE.SRGBColorSpace) });
       const mesh = new THREE.Mesh(geometry, material);
+      mesh.name = name;
       mesh.position.set(...at);
       mesh.rotation.z = yaw;
       mesh.castShadow = mesh.receiveShadow = true;

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from concurrent.futures import Future
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
@@ -51,12 +52,17 @@ _LINES = 40  # of the log
 class WebView(Node):
     """Shows robot, footsteps, goals, topics and nodes on a page, whose visitors can command the robot.
 
-    With `port` 0 the system chooses one; `page.url` is the address. `audience` plays the events of scenarios.
-    It changes nothing unless a visitor commands it.
+    With `port` 0 the system chooses one; `page.url` is the address. `audience` plays the events of scenarios;
+    `scenario` is the one that the robot was started with. It changes nothing unless a visitor commands it.
     """
 
     def __init__(
-        self, port: int = 0, host: str = LOOPBACK, token: str = "", audience: Audience | None = None
+        self,
+        port: int = 0,
+        host: str = LOOPBACK,
+        token: str = "",
+        audience: Audience | None = None,
+        scenario: str = "",
     ) -> None:
         super().__init__("web_view")
         self._heard: dict[str, _Topic] = {}
@@ -71,11 +77,12 @@ class WebView(Node):
         self._pictures = 0
         self._camera: Any = None  # the subscription to its pictures, while they are shown
         self._asked: SimpleQueue[tuple[Mapping[str, Any], Future[tuple[bool, str]]]] = SimpleQueue()
-        self._commands = Commands(self, self._why, audience)
+        self._commands = Commands(self, self._why, audience, scenario)
         self._stream = self.create_client(SetParameters, "/camera_driver/set_parameters")
         self.create_timer(_PERIOD, self._turn, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.page = PageServer(port, {"/camera.jpg": self._latest_picture}, self._ask, host, token)
-        self.page.show("setup", {"dances": list(DANCES), "scenarios": names() if audience else []})
+        scenarios = sorted({*names(), *([Path(scenario).stem] if scenario else [])}) if audience else []
+        self.page.show("setup", {"dances": list(DANCES), "scenarios": scenarios})
 
     def destroy_node(self) -> None:
         """Close the page too."""
@@ -152,6 +159,8 @@ class WebView(Node):
             self._simulated = value
         elif channel == "task":
             self._commands.task = value["number"]
+        elif channel == "obstacles":
+            self._commands.obstacles = [thing["name"] for thing in value]
 
     def _log(self, level: str, name: str, text: str) -> None:
         self._line += 1
