@@ -18,6 +18,8 @@ from humanoid.robot.mjcf import write_mjcf
 from ifgen_pytest.domains import own_domain
 from PIL import Image
 
+from .bodies import offset_hips
+
 pytestmark = pytest.mark.timeout(600)
 SHORT = "high_level_task_manager: {ros__parameters: {tasks: [walk 0.5 0.1 0.3]}}"
 REAL = importlib.util.find_spec("rpyutils") is not None
@@ -62,6 +64,19 @@ def test_the_same_seed_gives_the_same_states_also_from_a_file(tmp_path: Path) ->
     runs = [["--seed", "3"], ["--seed", "3", "--model", str(model)], ["--seed", "4"]]
     first, second, other = (demo("--scenario", "stop", *run)["state hash"] for run in runs)
     assert first == second != other
+
+
+@pytest.mark.slow
+def test_another_body_walks_and_waves(tmp_path: Path) -> None:
+    model, tasks = tmp_path / "own.xml", tmp_path / "tasks.yaml"
+    model.write_text(offset_hips())
+    tasks.write_text("/high_level_task_manager: {ros__parameters: {tasks: [walk 1 0.4 0.8, dance wave]}}")
+    summary = demo("--model", str(model), "--scenario", str(tasks))
+    assert summary["outcome"] == "done"
+    assert summary["falls"] == "0"
+    assert summary["dances"] == "1"
+    assert float(summary["foot error"].split()[0]) <= 20
+    assert float(summary["goal error"].split()[0]) <= 40
 
 
 @pytest.mark.slow

@@ -79,9 +79,10 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         self._battery = Level(message.level) if message.level in list(Level) else Level.UNKNOWN
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
-        """End the present task."""
+        """End the present task, and drop those that wait."""
         self._stopped = message.active
         if message.active:
+            self.manager.forget()  # before the present task ends: nothing is left to do then
             await self._cancel()
 
     async def on_decide_timer(self) -> None:
