@@ -15,7 +15,7 @@ pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transpo
 from high_level_task_manager import _high_level_task_manager_base as base
 from high_level_task_manager.high_level_task_manager import HighLevelTaskManager
 from humanoid_interfaces.action import PerformDance, WalkTo
-from humanoid_interfaces.msg import GaitState, TaskStatus
+from humanoid_interfaces.msg import EmergencyStop, GaitState, TaskStatus
 from humanoid_interfaces.srv import CheckHeadPose, SolveIK
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
@@ -107,5 +107,15 @@ def test_stop_all_drops_what_waits(ros: Any) -> None:
     robot.until(TaskStatus.STATE_RUNNING, 1)
     robot.speech.publish(String(data="stop all"))
     assert robot.until(TaskStatus.STATE_CANCELED, 1).waiting == 0
+    robot.until(TaskStatus.STATE_IDLE, 1)
+    assert robot.danced == []
+
+
+def test_an_emergency_stop_drops_what_waits(ros: Any) -> None:
+    robot = Robot(ros, "wait 100", "dance waltz")
+    stop = ros.peer.create_publisher(EmergencyStop, "/emergency_stop", base.EMERGENCY_STOP_SUBSCRIPTION_QOS)
+    robot.until(TaskStatus.STATE_RUNNING, 1)
+    stop.publish(EmergencyStop(active=True, reason="a test"))
+    robot.until(TaskStatus.STATE_CANCELED, 1)
     robot.until(TaskStatus.STATE_IDLE, 1)
     assert robot.danced == []

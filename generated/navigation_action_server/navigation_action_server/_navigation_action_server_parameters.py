@@ -71,8 +71,13 @@ class NavigationActionServerParameters:
     """
     tolerance: ToleranceParameters
     """The parameters `tolerance.*`."""
+    patience: float
+    """How long to wait for a way to become free before a goal is given up [s]
+
+    Must be from 0.0 to 3600.0.
+    """
     service_timeout: float
-    """How long to wait for footsteps [s]
+    """How long to wait for a path, and for footsteps [s]
 
     Must be from 0.05 to 10.0.
     """
@@ -120,6 +125,7 @@ def read_parameters(node: Node) -> NavigationActionServerParameters:
             position=values["tolerance.position"],
             yaw=values["tolerance.yaw"],
         ),
+        patience=values["patience"],
         service_timeout=values["service_timeout"],
     )
 
@@ -234,11 +240,21 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ),
         ),
         (
+            "patience",
+            Parameter.Type.DOUBLE,
+            30.0,
+            ParameterDescriptor(
+                description="How long to wait for a way to become free before a goal is given up [s]",
+                additional_constraints="must be from 0.0 to 3600.0",
+                floating_point_range=[FloatingPointRange(from_value=0.0, to_value=3600.0)],
+            ),
+        ),
+        (
             "service_timeout",
             Parameter.Type.DOUBLE,
             1.0,
             ParameterDescriptor(
-                description="How long to wait for footsteps [s]",
+                description="How long to wait for a path, and for footsteps [s]",
                 additional_constraints="must be from 0.05 to 10.0",
                 floating_point_range=[FloatingPointRange(from_value=0.05, to_value=10.0)],
             ),
@@ -264,6 +280,9 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "tolerance.yaw": (
         (lambda value: 0.005 <= value <= 1.0, "must be from 0.005 to 1.0"),
+    ),
+    "patience": (
+        (lambda value: 0.0 <= value <= 3600.0, "must be from 0.0 to 3600.0"),
     ),
     "service_timeout": (
         (lambda value: 0.05 <= value <= 10.0, "must be from 0.05 to 10.0"),

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from ..spatial import Array
 from . import table
 from .body import OURS, Body
-from .measuring import measure
+from .measuring import Measures, measure
 from .mjcf import TIMESTEP, write_mjcf
 from .obstacles import Solid, add_solids
 
 Indices = NDArray[np.intp]
 GRAVITY = 9.81
+_GAP = 0.06  # metres between the inner edges of the soles
 PERIOD = 4_000_000  # ns between control ticks: 250 Hz; more makes the estimate of the velocity too coarse
 
 
@@ -130,12 +131,22 @@ def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidMo
             lower,
             upper,
             min(measures.leg_lengths),
-            sum(measures.outwards),
+            _stance(measures, sole),
             (2 * sole.half_length, 2 * sole.half_width),
         ),
         straight_height=measures.straight_height,
         mass=float(mj.body_subtreemass[base]),
     )
+
+
+def _stance(measures: Measures, sole: SoleGeometry) -> float:
+    """The distance between the soles of a robot that stands [m].
+
+    They are below the hips, but no farther apart than ours for the length of the legs: the wider they are,
+    the more the robot sways. Feet need a gap between them.
+    """
+    usual = OURS.stance_width * min(measures.leg_lengths) / OURS.leg_length
+    return min(sum(measures.outwards), max(usual, 2 * sole.half_width + _GAP))
 
 
 def _leg(mj: mujoco.MjModel, joints: Indices) -> LegGeometry:

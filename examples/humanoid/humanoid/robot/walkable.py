@@ -98,9 +98,10 @@ def _check_sizes(path: Path, model: HumanoidModel, joints: dict[str, str]) -> No
             f"'{model.mj.body(model.base).name}' and r_sole {measures.outwards[1]:.3f} m to the right, "
             "with all joints at zero"
         )
-    if not _STANCES[0] <= model.body.stance_width <= _STANCES[1]:
+    apart = sum(measures.outwards)
+    if not _STANCES[0] <= apart <= _STANCES[1]:
         raise ModelError(
-            f"{path}: the soles are {model.body.stance_width:.2f} m apart with all joints at zero; the robot "
+            f"{path}: the soles are {apart:.2f} m apart with all joints at zero; the robot "
             f"walks with {_STANCES[0]} to {_STANCES[1]} m"
         )
     length, width = model.body.foot

@@ -48,6 +48,8 @@ GROUPS: dict[str, tuple[str, ...]] = {
     "tasks": (
         "emergency_stop",
         "battery_monitor",
+        "motion_planner",
+        "footstep_planner",
         "footstep_generation_server",
         "navigation_action_server",
         "high_level_task_manager",
@@ -71,6 +73,7 @@ WITH_BODY = (
     "navigation_action_server",
     "dance_action_server",
     "obstacle_mapper",
+    "footstep_planner",
 )
 """Nodes that load the robot's model: their parameters `model_file` and `joint_map` say which."""
 
