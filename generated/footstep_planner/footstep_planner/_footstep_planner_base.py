@@ -6,18 +6,18 @@ from abc import ABC, abstractmethod
 from typing import Any
 
 from geometry_msgs.msg import Twist
-from humanoid_interfaces.msg import FootstepPlan, GaitState
-from humanoid_interfaces.srv import PlanFootsteps
-from nav_msgs.msg import Odometry, Path
-from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from humanoid_interfaces.msg import GaitState
+from humanoid_interfaces.srv import FollowPath, PlanFootsteps
+from nav_msgs.msg import OccupancyGrid
+from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.client import Client
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.service import Service
 from rclpy.subscription import Subscription
-from rclpy.timer import Timer
 
 from footstep_planner._footstep_planner_parameters import (
     FootstepPlannerParameters,
@@ -26,23 +26,22 @@ from footstep_planner._footstep_planner_parameters import (
 )
 from footstep_planner._waiting import call, sleep
 
-FOOTSTEPS_PLAN_PUBLISHER_QOS = QoSProfile(
+HUMANOID_CMD_VEL_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
-    durability=DurabilityPolicy.VOLATILE,
+    lifespan=Duration(nanoseconds=500_000_000),
 )
-HUMANOID_CMD_VEL_SUBSCRIPTION_QOS = QoSProfile(
+TELEOP_VELOCITY_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
-    deadline=Duration(nanoseconds=500_000_000),
 )
-PLAN_SUBSCRIPTION_QOS = QoSProfile(
+MAP_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
-    durability=DurabilityPolicy.VOLATILE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
 GAIT_STATE_SUBSCRIPTION_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
@@ -50,50 +49,43 @@ GAIT_STATE_SUBSCRIPTION_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
-ODOM_SUBSCRIPTION_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.BEST_EFFORT,
-)
 
 
 class FootstepPlannerBase(Node, ABC):
-    """Follows a velocity or a path by asking for footsteps again and again, always a few steps ahead. The
-    robot stops when velocities stop arriving.
+    """Turns a path into footsteps, and lets a velocity through to the feet as long as nothing is in the
+    way. The last line of a path is planned by /plan_footsteps.
     """
 
     parameters: FootstepPlannerParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
-    footsteps_plan_publisher: Publisher[FootstepPlan]
-    """The next steps; volatile, because an old plan must not set a late-starting controller in motion
-
-    `/footsteps/plan`, humanoid_interfaces/msg/FootstepPlan.
-    """
-    humanoid_cmd_vel_subscription: Subscription[Twist]
-    """Wanted velocity in base_footprint
+    humanoid_cmd_vel_publisher: Publisher[Twist]
+    """The wanted velocity, or zero where something is in the way
 
     `/humanoid/cmd_vel`, geometry_msgs/msg/Twist.
     """
-    plan_subscription: Subscription[Path]
-    """A path to follow; a path from before this node started is not walked
+    teleop_velocity_subscription: Subscription[Twist]
+    """Wanted velocity in base_footprint
 
-    `/plan`, nav_msgs/msg/Path.
+    `/teleop/velocity`, geometry_msgs/msg/Twist.
+    """
+    map_subscription: Subscription[OccupancyGrid]
+    """Where obstacles are
+
+    `/map`, nav_msgs/msg/OccupancyGrid.
     """
     gait_state_subscription: Subscription[GaitState]
     """Where the feet are
 
     `/gait_state`, humanoid_interfaces/msg/GaitState.
     """
-    odom_subscription: Subscription[Odometry]
-    """Where the base is
+    follow_path_service: Service[FollowPath]
+    """Plan the steps along a path
 
-    `/odom`, nav_msgs/msg/Odometry.
+    `/follow_path`, humanoid_interfaces/srv/FollowPath.
     """
     plan_footsteps_client: Client[PlanFootsteps]
     """`/plan_footsteps`, humanoid_interfaces/srv/PlanFootsteps."""
-    replan_timer: Timer
-    """Calls `on_replan_timer`."""
 
     def __init__(self, node_name: str = "footstep_planner", **options: Any) -> None:
         """Take the options of `rclpy.node.Node`. Raises ParametersError for parameters that break rules."""
@@ -102,28 +94,28 @@ class FootstepPlannerBase(Node, ABC):
         self.add_post_set_parameters_callback(self._replace_parameters)
         # Whatever waits for something else keeps nothing from being called.
         group = ReentrantCallbackGroup()
-        self.footsteps_plan_publisher = self.create_publisher(
-            FootstepPlan,
-            "/footsteps/plan",
-            FOOTSTEPS_PLAN_PUBLISHER_QOS,
+        self.humanoid_cmd_vel_publisher = self.create_publisher(
+            Twist,
+            "/humanoid/cmd_vel",
+            HUMANOID_CMD_VEL_PUBLISHER_QOS,
         )
         self.plan_footsteps_client = self.create_client(
             PlanFootsteps,
             "/plan_footsteps",
             callback_group=group,
         )
-        self.humanoid_cmd_vel_subscription = self.create_subscription(
+        self.teleop_velocity_subscription = self.create_subscription(
             Twist,
-            "/humanoid/cmd_vel",
-            self.on_humanoid_cmd_vel,
-            HUMANOID_CMD_VEL_SUBSCRIPTION_QOS,
+            "/teleop/velocity",
+            self.on_teleop_velocity,
+            TELEOP_VELOCITY_SUBSCRIPTION_QOS,
             callback_group=group,
         )
-        self.plan_subscription = self.create_subscription(
-            Path,
-            "/plan",
-            self.on_plan,
-            PLAN_SUBSCRIPTION_QOS,
+        self.map_subscription = self.create_subscription(
+            OccupancyGrid,
+            "/map",
+            self.on_map,
+            MAP_SUBSCRIPTION_QOS,
             callback_group=group,
         )
         self.gait_state_subscription = self.create_subscription(
@@ -133,38 +125,32 @@ class FootstepPlannerBase(Node, ABC):
             GAIT_STATE_SUBSCRIPTION_QOS,
             callback_group=group,
         )
-        self.odom_subscription = self.create_subscription(
-            Odometry,
-            "/odom",
-            self.on_odom,
-            ODOM_SUBSCRIPTION_QOS,
+        self.follow_path_service = self.create_service(
+            FollowPath,
+            "/follow_path",
+            self.handle_follow_path,
             callback_group=group,
         )
-        self.replan_timer = self.create_timer(
-            0.5,
-            self.on_replan_timer,
-            callback_group=MutuallyExclusiveCallbackGroup(),
-        )
 
-    def publish_footsteps_plan(self, message: FootstepPlan) -> None:
-        """Publish on `/footsteps/plan`.
+    def publish_humanoid_cmd_vel(self, message: Twist) -> None:
+        """Publish on `/humanoid/cmd_vel`.
 
-        The next steps; volatile, because an old plan must not set a late-starting controller in motion
+        The wanted velocity, or zero where something is in the way
         """
-        self.footsteps_plan_publisher.publish(message)
+        self.humanoid_cmd_vel_publisher.publish(message)
 
     @abstractmethod
-    async def on_humanoid_cmd_vel(self, message: Twist) -> None:
-        """Take a message from `/humanoid/cmd_vel`.
+    async def on_teleop_velocity(self, message: Twist) -> None:
+        """Take a message from `/teleop/velocity`.
 
         Wanted velocity in base_footprint
         """
 
     @abstractmethod
-    async def on_plan(self, message: Path) -> None:
-        """Take a message from `/plan`.
+    async def on_map(self, message: OccupancyGrid) -> None:
+        """Take a message from `/map`.
 
-        A path to follow; a path from before this node started is not walked
+        Where obstacles are
         """
 
     @abstractmethod
@@ -175,10 +161,14 @@ class FootstepPlannerBase(Node, ABC):
         """
 
     @abstractmethod
-    async def on_odom(self, message: Odometry) -> None:
-        """Take a message from `/odom`.
+    async def handle_follow_path(
+        self,
+        request: FollowPath.Request,
+        response: FollowPath.Response,
+    ) -> FollowPath.Response:
+        """Answer a request to `/follow_path`.
 
-        Where the base is
+        Plan the steps along a path
         """
 
     async def call_plan_footsteps(
@@ -195,10 +185,6 @@ class FootstepPlannerBase(Node, ABC):
             timeout_sec,
         )
         return response
-
-    @abstractmethod
-    async def on_replan_timer(self) -> None:
-        """Called every 0.5 s."""
 
     async def sleep(self, seconds: float) -> None:
         """Let other callbacks run for the given seconds."""

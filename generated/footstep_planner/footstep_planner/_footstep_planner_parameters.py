@@ -20,15 +20,25 @@ class ParametersError(Exception):
 class FootstepPlannerParameters:
     """The parameters of the node footstep_planner."""
 
+    model_file: str
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     horizon: int
-    """Steps that are planned ahead
+    """Steps ahead that must be free for a velocity
 
     Must be from 2 to 32.
     """
-    command_timeout: float
-    """Silence on cmd_vel after which the robot stops [s]
+    clearance: float
+    """From the middle of the body to an obstacle when walking at a velocity [m]
 
-    Must be from 0.1 to 5.0.
+    Must be from 0.2 to 2.0.
     """
     service_timeout: float
     """How long to wait for footsteps [s]
@@ -69,8 +79,10 @@ def read_parameters(node: Node) -> FootstepPlannerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return FootstepPlannerParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         horizon=values["horizon"],
-        command_timeout=values["command_timeout"],
+        clearance=values["clearance"],
         service_timeout=values["service_timeout"],
     )
 
@@ -107,23 +119,41 @@ def _problem(name: str, value: Any) -> str:
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
         (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
+        (
             "horizon",
             Parameter.Type.INTEGER,
             4,
             ParameterDescriptor(
-                description="Steps that are planned ahead",
+                description="Steps ahead that must be free for a velocity",
                 additional_constraints="must be from 2 to 32",
                 integer_range=[IntegerRange(from_value=2, to_value=32)],
             ),
         ),
         (
-            "command_timeout",
+            "clearance",
             Parameter.Type.DOUBLE,
-            0.6,
+            0.35,
             ParameterDescriptor(
-                description="Silence on cmd_vel after which the robot stops [s]",
-                additional_constraints="must be from 0.1 to 5.0",
-                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=5.0)],
+                description="From the middle of the body to an obstacle when walking at a velocity [m]",
+                additional_constraints="must be from 0.2 to 2.0",
+                floating_point_range=[FloatingPointRange(from_value=0.2, to_value=2.0)],
             ),
         ),
         (
@@ -143,8 +173,8 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "horizon": (
         (lambda value: 2 <= value <= 32, "must be from 2 to 32"),
     ),
-    "command_timeout": (
-        (lambda value: 0.1 <= value <= 5.0, "must be from 0.1 to 5.0"),
+    "clearance": (
+        (lambda value: 0.2 <= value <= 2.0, "must be from 0.2 to 2.0"),
     ),
     "service_timeout": (
         (lambda value: 0.05 <= value <= 10.0, "must be from 0.05 to 10.0"),

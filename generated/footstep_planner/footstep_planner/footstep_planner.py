@@ -1,82 +1,131 @@
-"""The node footstep_planner: written once by ifgen, yours from then on.
-
-`ifgen run -m footstep_planner.footstep_planner` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node footstep_planner: a path to footsteps, and a velocity only as far as the way is free."""
 
 from __future__ import annotations
 
-import sys
+from dataclasses import replace
 from typing import Any
 
-import rclpy
+import numpy as np
 from geometry_msgs.msg import Twist
-from humanoid_interfaces.msg import FootstepPlan, GaitState
-from nav_msgs.msg import Odometry, Path
-from rclpy.executors import ExternalShutdownException
+from humanoid import data
+from humanoid.planning.following import blocked_step, steps_to_last_line
+from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, shorter
+from humanoid.planning.steering import free_ahead
+from humanoid.robot.body import load_body
+from humanoid.ros import messages
+from humanoid.ros.grids import read_occupancy_grid, read_path
+from humanoid.ros.running import run
+from humanoid_interfaces.msg import GaitState
+from humanoid_interfaces.srv import FollowPath, PlanFootsteps
+from nav_msgs.msg import OccupancyGrid
 
 from footstep_planner._footstep_planner_base import FootstepPlannerBase
 from footstep_planner._footstep_planner_parameters import ParametersError
 
+_FRAMES = ("", "odom")
+
 
 class FootstepPlanner(FootstepPlannerBase):
-    """Follows a velocity or a path by asking for footsteps again and again, always a few steps ahead. The
-    robot stops when velocities stop arriving.
-    """
+    """Answers requests with plans, and stops the joystick in front of obstacles."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
-        self.publish_footsteps_plan(FootstepPlan())
+        self._limits = fitted(StepLimits(), load_body(self.parameters.model_file, self.parameters.joint_map))
+        self._gait: GaitState | None = None
+        self._points = np.zeros((0, 2))
 
-    async def on_humanoid_cmd_vel(self, message: Twist) -> None:
-        """Take a message from `/humanoid/cmd_vel`.
-
-        Wanted velocity in base_footprint
-        """
-        self.get_logger().debug("message on /humanoid/cmd_vel")
-
-    async def on_plan(self, message: Path) -> None:
-        """Take a message from `/plan`.
-
-        A path to follow; a path from before this node started is not walked
-        """
-        self.get_logger().debug("message on /plan")
+    async def on_map(self, message: OccupancyGrid) -> None:
+        """Take where obstacles are."""
+        try:
+            self._points = read_occupancy_grid(message).occupied()
+        except ValueError as error:
+            self.get_logger().warning(f"/map: {error}", throttle_duration_sec=5.0)
 
     async def on_gait_state(self, message: GaitState) -> None:
-        """Take a message from `/gait_state`.
+        """Remember where the feet are."""
+        self._gait = message
 
-        Where the feet are
-        """
-        self.get_logger().debug("message on /gait_state")
+    async def on_teleop_velocity(self, message: Twist) -> None:
+        """Let a velocity through if the next steps at it are free; otherwise stop."""
+        velocity = message.linear.x, message.linear.y, message.angular.z
+        if self._gait is not None and len(self._points) and any(velocity):
+            centre = messages.read_gait_state(self._gait).stance.centre
+            values = self.parameters
+            if not free_ahead(centre, velocity, self._points, self._limits, values.horizon, values.clearance):
+                self.get_logger().warning("stopped: an obstacle is in the way", throttle_duration_sec=2.0)
+                message = Twist()
+        self.publish_humanoid_cmd_vel(message)
 
-    async def on_odom(self, message: Odometry) -> None:
-        """Take a message from `/odom`.
+    async def handle_follow_path(
+        self, request: FollowPath.Request, response: FollowPath.Response
+    ) -> FollowPath.Response:
+        """Plan the steps along a path: round its corners here, on its last line by /plan_footsteps."""
+        try:
+            self._check(request)
+            places, yaw = read_path(request.path)
+        except ValueError as error:
+            response.status = int(PlanStatus.INVALID_REQUEST)
+            response.message = str(error)[:255]
+            return response
+        limits = shorter(self._limits, request.max_step_length)
+        start = messages.read_stance(request.start)
+        leg = data.Leg(request.first_leg) if request.first_leg else None
+        steps, stance = steps_to_last_line(start, places, limits, leg, request.first_index)
+        index = request.first_index + len(steps)
+        if steps:
+            leg = steps[-1].leg.other
+        asked = PlanFootsteps.Request(
+            start=messages.stance(stance, messages.nanoseconds(request.start.header.stamp)),
+            goal=messages.stamped(0, messages.planar_pose(*places[-1], yaw)),
+            first_leg=int(leg or 0),
+            max_step_length=request.max_step_length,
+        )
+        try:
+            rest = await self.call_plan_footsteps(asked, timeout_sec=self.parameters.service_timeout)
+        except TimeoutError as error:
+            response.message = str(error)[:255]
+            return response
+        if rest.status == int(PlanStatus.PLANNED):
+            steps += [
+                replace(step, index=index + number)
+                for number, step in enumerate(messages.read_footstep_plan(rest.plan).steps)
+            ]
+        elif not (rest.status == int(PlanStatus.ALREADY_THERE) and steps):
+            response.status, response.message = rest.status, rest.message
+            return response
+        if problem := blocked_step(steps, self._points, start.centre, limits):
+            response.status = int(PlanStatus.BLOCKED)
+            response.message = problem[:255]
+            return response
+        response.status = int(PlanStatus.PLANNED)
+        goal = (*places[-1], yaw)
+        plan = data.FootstepPlan(0, tuple(steps), goal)
+        response.plan = messages.footstep_plan(plan, self.get_clock().now().nanoseconds)
+        return response
 
-        Where the base is
-        """
-        self.get_logger().debug("message on /odom")
-
-    async def on_replan_timer(self) -> None:
-        """Called every 0.5 s."""
-        self.get_logger().debug("timer replan")
+    @staticmethod
+    def _check(request: FollowPath.Request) -> None:
+        """Raise ValueError if a request cannot be planned."""
+        for what, frame in (
+            ("path", request.path.header.frame_id),
+            ("stance", request.start.header.frame_id),
+        ):
+            if frame not in _FRAMES:
+                raise ValueError(f"the {what} is in '{frame}'; I plan in odom")
+        if request.first_leg not in (0, data.Leg.LEFT, data.Leg.RIGHT):
+            raise ValueError(f"there is no leg {request.first_leg}")
+        stance = messages.read_stance(request.start)
+        if not all(np.isfinite(foot).all() for foot in stance.feet):
+            raise ValueError("the stance holds a number that is not finite")
+        if not 0 <= request.max_step_length < np.inf:
+            raise ValueError(
+                f"max_step_length is {request.max_step_length:g} m; it must be finite, 0 or more"
+            )
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = FootstepPlanner()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"footstep_planner: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(FootstepPlanner, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -9,15 +9,12 @@ from __future__ import annotations
 import os
 import re
 import tempfile
-import time
 from array import array
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
-from importlib.util import find_spec
-from itertools import pairwise
 from operator import attrgetter
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -90,11 +87,10 @@ def ignore(*_: Any) -> None:
 
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
-    "on_humanoid_cmd_vel": idle,
-    "on_plan": idle,
+    "on_teleop_velocity": idle,
+    "on_map": idle,
     "on_gait_state": idle,
-    "on_odom": idle,
-    "on_replan_timer": idle,
+    "handle_follow_path": idle,
     "on_parameters_changed": ignore,
 }
 
@@ -188,15 +184,22 @@ def at_most(bound: int, elements: Strategy, drawn: int = 3) -> Strategy:
 
 # fmt: off
 # The values of fields, one line each; NaN is left out, because it equals nothing.
+FLOAT64S = st.floats(allow_nan=False)
 INT32S = st.integers(-2147483648, 2147483647)
 UINT32S = st.integers(0, 4294967295)
 CHARACTERS = "aZ09 _/~\"'\\\n\t\x7fäßłЖ中\u0301\u05d0\ufffd\ufeff🤖\U0010ffff"
 STRINGS = st.text(CHARACTERS, max_size=12)
-UINT8S = st.integers(0, 255)
-FLOAT64S = st.floats(allow_nan=False)
 FLOAT32S = st.floats(allow_nan=False, width=32)
+INT8S = st.integers(-128, 127)
+UINT8S = st.integers(0, 255)
 
 # The values of messages, one line a field; those that others need come first.
+geometry_msgs_msg_Vector3 = st.builds(geometry_msgs.msg.Vector3, x=FLOAT64S, y=FLOAT64S, z=FLOAT64S)
+geometry_msgs_msg_Twist = st.builds(
+    geometry_msgs.msg.Twist,
+    linear=geometry_msgs_msg_Vector3,
+    angular=geometry_msgs_msg_Vector3,
+)
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
 std_msgs_msg_Header = st.builds(std_msgs.msg.Header, stamp=builtin_interfaces_msg_Time, frame_id=STRINGS)
 geometry_msgs_msg_Point = st.builds(geometry_msgs.msg.Point, x=FLOAT64S, y=FLOAT64S, z=FLOAT64S)
@@ -207,42 +210,24 @@ geometry_msgs_msg_Quaternion = st.builds(
     z=FLOAT64S,
     w=FLOAT64S,
 )
-builtin_interfaces_msg_Duration = st.builds(builtin_interfaces.msg.Duration, sec=INT32S, nanosec=UINT32S)
-humanoid_interfaces_msg_Footstep = st.builds(
-    humanoid_interfaces.msg.Footstep,
-    index=UINT32S,
-    leg=st.sampled_from([0, 1, 2]) | UINT8S,
-    position=geometry_msgs_msg_Point,
-    orientation=geometry_msgs_msg_Quaternion,
-    step_time=builtin_interfaces_msg_Duration,
-)
 geometry_msgs_msg_Pose = st.builds(
     geometry_msgs.msg.Pose,
     position=geometry_msgs_msg_Point,
     orientation=geometry_msgs_msg_Quaternion,
 )
-humanoid_interfaces_msg_FootstepPlan = st.builds(
-    humanoid_interfaces.msg.FootstepPlan,
-    header=std_msgs_msg_Header,
-    plan_id=UINT32S,
-    steps=at_most(512, humanoid_interfaces_msg_Footstep),
-    goal=geometry_msgs_msg_Pose,
+nav_msgs_msg_MapMetaData = st.builds(
+    nav_msgs.msg.MapMetaData,
+    map_load_time=builtin_interfaces_msg_Time,
+    resolution=FLOAT32S,
+    width=UINT32S,
+    height=UINT32S,
+    origin=geometry_msgs_msg_Pose,
 )
-geometry_msgs_msg_Vector3 = st.builds(geometry_msgs.msg.Vector3, x=FLOAT64S, y=FLOAT64S, z=FLOAT64S)
-geometry_msgs_msg_Twist = st.builds(
-    geometry_msgs.msg.Twist,
-    linear=geometry_msgs_msg_Vector3,
-    angular=geometry_msgs_msg_Vector3,
-)
-geometry_msgs_msg_PoseStamped = st.builds(
-    geometry_msgs.msg.PoseStamped,
+nav_msgs_msg_OccupancyGrid = st.builds(
+    nav_msgs.msg.OccupancyGrid,
     header=std_msgs_msg_Header,
-    pose=geometry_msgs_msg_Pose,
-)
-nav_msgs_msg_Path = st.builds(
-    nav_msgs.msg.Path,
-    header=std_msgs_msg_Header,
-    poses=some(geometry_msgs_msg_PoseStamped),
+    info=nav_msgs_msg_MapMetaData,
+    data=some(INT8S),
 )
 humanoid_interfaces_msg_Stance = st.builds(
     humanoid_interfaces.msg.Stance,
@@ -261,22 +246,45 @@ humanoid_interfaces_msg_GaitState = st.builds(
     footstep_index=UINT32S,
     phase=FLOAT32S,
 )
-geometry_msgs_msg_PoseWithCovariance = st.builds(
-    geometry_msgs.msg.PoseWithCovariance,
-    pose=geometry_msgs_msg_Pose,
-    covariance=exactly(36, FLOAT64S),
-)
-geometry_msgs_msg_TwistWithCovariance = st.builds(
-    geometry_msgs.msg.TwistWithCovariance,
-    twist=geometry_msgs_msg_Twist,
-    covariance=exactly(36, FLOAT64S),
-)
-nav_msgs_msg_Odometry = st.builds(
-    nav_msgs.msg.Odometry,
+geometry_msgs_msg_PoseStamped = st.builds(
+    geometry_msgs.msg.PoseStamped,
     header=std_msgs_msg_Header,
-    child_frame_id=STRINGS,
-    pose=geometry_msgs_msg_PoseWithCovariance,
-    twist=geometry_msgs_msg_TwistWithCovariance,
+    pose=geometry_msgs_msg_Pose,
+)
+nav_msgs_msg_Path = st.builds(
+    nav_msgs.msg.Path,
+    header=std_msgs_msg_Header,
+    poses=some(geometry_msgs_msg_PoseStamped),
+)
+humanoid_interfaces_srv_FollowPath_Request = st.builds(
+    humanoid_interfaces.srv.FollowPath.Request,
+    start=humanoid_interfaces_msg_Stance,
+    path=nav_msgs_msg_Path,
+    first_leg=UINT8S,
+    first_index=UINT32S,
+    max_step_length=FLOAT64S,
+)
+builtin_interfaces_msg_Duration = st.builds(builtin_interfaces.msg.Duration, sec=INT32S, nanosec=UINT32S)
+humanoid_interfaces_msg_Footstep = st.builds(
+    humanoid_interfaces.msg.Footstep,
+    index=UINT32S,
+    leg=st.sampled_from([0, 1, 2]) | UINT8S,
+    position=geometry_msgs_msg_Point,
+    orientation=geometry_msgs_msg_Quaternion,
+    step_time=builtin_interfaces_msg_Duration,
+)
+humanoid_interfaces_msg_FootstepPlan = st.builds(
+    humanoid_interfaces.msg.FootstepPlan,
+    header=std_msgs_msg_Header,
+    plan_id=UINT32S,
+    steps=at_most(512, humanoid_interfaces_msg_Footstep),
+    goal=geometry_msgs_msg_Pose,
+)
+humanoid_interfaces_srv_FollowPath_Response = st.builds(
+    humanoid_interfaces.srv.FollowPath.Response,
+    status=UINT8S,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    plan=humanoid_interfaces_msg_FootstepPlan,
 )
 humanoid_interfaces_srv_PlanFootsteps_Request = st.builds(
     humanoid_interfaces.srv.PlanFootsteps.Request,
@@ -315,33 +323,33 @@ class Topic:
 # fmt: off
 PUBLISHERS = [
     Topic(
-        "/footsteps/plan",
-        "humanoid_interfaces/msg/FootstepPlan",
-        humanoid_interfaces.msg.FootstepPlan,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.VOLATILE),
-        "publish_footsteps_plan",
-        "footsteps_plan_publisher",
-        humanoid_interfaces_msg_FootstepPlan,
+        "/humanoid/cmd_vel",
+        "geometry_msgs/msg/Twist",
+        geometry_msgs.msg.Twist,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, lifespan=Duration(nanoseconds=500_000_000)),
+        "publish_humanoid_cmd_vel",
+        "humanoid_cmd_vel_publisher",
+        geometry_msgs_msg_Twist,
     ),
 ]
 SUBSCRIPTIONS = [
     Topic(
-        "/humanoid/cmd_vel",
+        "/teleop/velocity",
         "geometry_msgs/msg/Twist",
         geometry_msgs.msg.Twist,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, deadline=Duration(nanoseconds=500_000_000)),
-        "on_humanoid_cmd_vel",
-        "humanoid_cmd_vel_subscription",
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE),
+        "on_teleop_velocity",
+        "teleop_velocity_subscription",
         geometry_msgs_msg_Twist,
     ),
     Topic(
-        "/plan",
-        "nav_msgs/msg/Path",
-        nav_msgs.msg.Path,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.VOLATILE),
-        "on_plan",
-        "plan_subscription",
-        nav_msgs_msg_Path,
+        "/map",
+        "nav_msgs/msg/OccupancyGrid",
+        nav_msgs.msg.OccupancyGrid,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        "on_map",
+        "map_subscription",
+        nav_msgs_msg_OccupancyGrid,
     ),
     Topic(
         "/gait_state",
@@ -351,15 +359,6 @@ SUBSCRIPTIONS = [
         "on_gait_state",
         "gait_state_subscription",
         humanoid_interfaces_msg_GaitState,
-    ),
-    Topic(
-        "/odom",
-        "nav_msgs/msg/Odometry",
-        nav_msgs.msg.Odometry,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
-        "on_odom",
-        "odom_subscription",
-        nav_msgs_msg_Odometry,
     ),
 ]
 # fmt: on
@@ -440,6 +439,18 @@ class ServiceCase:
 
 
 # fmt: off
+SERVICES = [
+    ServiceCase(
+        "/follow_path",
+        "humanoid_interfaces/srv/FollowPath",
+        humanoid_interfaces.srv.FollowPath,
+        None,
+        "handle_follow_path",
+        "follow_path_service",
+        humanoid_interfaces_srv_FollowPath_Request,
+        humanoid_interfaces_srv_FollowPath_Response,
+    ),
+]
 CLIENTS = [
     ServiceCase(
         "/plan_footsteps",
@@ -468,6 +479,24 @@ def check_service(ros: Any, node: Any, case: ServiceCase, names_and_types: Calla
         found = getattr(node, case.attribute).qos_profile
         assert_same_qos(found, case.qos, "history", "depth", "reliability", "durability")
     return name
+
+
+@pytest.mark.parametrize("case", SERVICES, ids=str)
+def test_service(ros: Any, case: ServiceCase) -> None:
+    """The node has the service as described, and answers any request in time."""
+    node = start(ros, only(case.method))
+    name = check_service(ros, node, case, ros.peer.get_service_names_and_types_by_node)
+    profile = {} if case.qos is None else {"qos_profile": case.qos}
+    client = ros.peer.create_client(case.service, name, **profile)
+    ros.spin_until(client.service_is_ready, f"service {name}")
+
+    @EXAMPLES
+    @given(case.requests)
+    def check(request: Any) -> None:
+        response = ros.result(client.call_async(request), f"response of {name}")
+        assert isinstance(response, case.service.Response)
+
+    check()
 
 
 @pytest.mark.parametrize("case", CLIENTS, ids=str)
@@ -536,22 +565,40 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "model_file",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
+        read_only=True,
+    ),
+    ParameterCase(
+        "joint_map",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+        read_only=True,
+    ),
+    ParameterCase(
         "horizon",
         Parameter.Type.INTEGER,
         4,
         [4, 2, 32, 3, 31, 5],
         [1, 33],
-        description="Steps that are planned ahead",
+        description="Steps ahead that must be free for a velocity",
         range=(2, 32),
     ),
     ParameterCase(
-        "command_timeout",
+        "clearance",
         Parameter.Type.DOUBLE,
-        0.6,
-        [0.6, 0.1, 5.0, 2.55, 0.102, 4.9],
-        [0.098, 5.1],
-        description="Silence on cmd_vel after which the robot stops [s]",
-        range=(0.1, 5.0),
+        0.35,
+        [0.35, 0.2, 2.0, 1.1, 0.204, 1.96],
+        [0.196, 2.04],
+        description="From the middle of the body to an obstacle when walking at a velocity [m]",
+        range=(0.2, 2.0),
     ),
     ParameterCase(
         "service_timeout",
@@ -635,86 +682,3 @@ def test_parameters_changed(ros: Any) -> None:
             for other in PARAMETERS:
                 # rclpy cannot tell of which type an empty array is, and so has none.
                 assert value_of(node, other.name) in (own_view(node, other.name), None)
-
-
-@dataclass(frozen=True)
-class TimerCase:
-    """A timer: its callback and attribute, its period, whether it follows ROS time, and what is published then.
-
-    Those are (method, message class, topic, QoS profile, deadline [s]).
-    """
-
-    method: str
-    attribute: str
-    period: float
-    in_ros_time: bool
-    publishes: list[tuple[str, Any, str, QoSProfile, float]]
-
-    def __str__(self) -> str:
-        """The test's id."""
-        return self.method
-
-
-# fmt: off
-TIMERS = [
-    TimerCase(
-        "on_replan_timer",
-        "replan_timer",
-        0.5,
-        True,
-        [
-        ],
-    ),
-]
-# fmt: on
-
-
-def pass_periods(ros: Any, case: TimerCase, count: int, enough: Callable[[], bool]) -> None:
-    """Let a timer's time pass, in tenths of its period."""
-    if case.in_ros_time:
-        for _ in range(10 * count):
-            ros.pass_time(case.period / 10)
-        ros.spins_until(enough, timeout=1.0)
-        return
-    if case.period > 1.0 and find_spec("rmw_local") is None:
-        pytest.skip("this would take long in real time: run pytest with --transport local")
-    ros.spins_until(enough, timeout=count * case.period + 1.0)
-
-
-@pytest.mark.parametrize("case", TIMERS, ids=str)
-def test_timer(ros: Any, case: TimerCase) -> None:
-    """The timer calls once a period; what is published then keeps the deadlines that it offers."""
-    calls: list[float] = []
-
-    def publish(node: Any) -> None:
-        calls.append(node.get_clock().now().nanoseconds / 1e9 if case.in_ros_time else time.monotonic())
-        for method, message, *_ in case.publishes:
-            getattr(node, method)(message())
-
-    node = start_bare(ros, methods={case.method: publish}, use_sim_time=True)
-    heard: dict[str, list[Any]] = {topic: [] for _, _, topic, *_ in case.publishes}
-    for _, message, topic, qos, _ in case.publishes:
-        name = node.resolve_topic_name(topic)
-        ros.peer.create_subscription(message, name, heard[topic].append, qos)
-        ros.spin_until(partial(ros.peer.count_publishers, name), f"publisher of {name}")
-    calls.clear()
-    pass_periods(ros, case, 5, lambda: len(calls) >= 5 and all(map(len, heard.values())))
-    assert 4 <= len(calls) <= 7
-    gaps = [later - earlier for earlier, later in pairwise(calls)]
-    typical = sorted(gaps)[len(gaps) // 2]
-    jitter = 1e-6 if case.in_ros_time else 0.02
-    assert abs(typical - case.period) <= 0.3 * case.period + jitter, gaps
-    for _, _, topic, _, deadline in case.publishes:
-        assert heard[topic], topic
-        assert not deadline or typical <= deadline + jitter, topic
-
-
-@pytest.mark.parametrize("case", TIMERS, ids=str)
-def test_timer_does_no_harm(ros: Any, case: TimerCase) -> None:
-    """Your callback raises nothing, and ends."""
-    begun: list[Any] = []
-    ended: list[Any] = []
-    node = start(ros, noting(case.method, begun, ended))
-    ros.hurry(getattr(node, case.attribute))
-    ros.spin_until(lambda: begun, f"call of {case.method}")
-    wait_for_end(ros, begun, ended, case.method)

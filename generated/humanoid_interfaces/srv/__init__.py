@@ -21,10 +21,18 @@ if TYPE_CHECKING:
     from humanoid_interfaces.srv._detect_objects import DetectObjects_Event as DetectObjects_Event
     from humanoid_interfaces.srv._detect_objects import DetectObjects_Request as DetectObjects_Request
     from humanoid_interfaces.srv._detect_objects import DetectObjects_Response as DetectObjects_Response
+    from humanoid_interfaces.srv._follow_path import FollowPath as FollowPath
+    from humanoid_interfaces.srv._follow_path import FollowPath_Event as FollowPath_Event
+    from humanoid_interfaces.srv._follow_path import FollowPath_Request as FollowPath_Request
+    from humanoid_interfaces.srv._follow_path import FollowPath_Response as FollowPath_Response
     from humanoid_interfaces.srv._plan_footsteps import PlanFootsteps as PlanFootsteps
     from humanoid_interfaces.srv._plan_footsteps import PlanFootsteps_Event as PlanFootsteps_Event
     from humanoid_interfaces.srv._plan_footsteps import PlanFootsteps_Request as PlanFootsteps_Request
     from humanoid_interfaces.srv._plan_footsteps import PlanFootsteps_Response as PlanFootsteps_Response
+    from humanoid_interfaces.srv._plan_path import PlanPath as PlanPath
+    from humanoid_interfaces.srv._plan_path import PlanPath_Event as PlanPath_Event
+    from humanoid_interfaces.srv._plan_path import PlanPath_Request as PlanPath_Request
+    from humanoid_interfaces.srv._plan_path import PlanPath_Response as PlanPath_Response
     from humanoid_interfaces.srv._solve_ik import SolveIK as SolveIK
     from humanoid_interfaces.srv._solve_ik import SolveIK_Event as SolveIK_Event
     from humanoid_interfaces.srv._solve_ik import SolveIK_Request as SolveIK_Request
@@ -43,10 +51,18 @@ __all__ = [
     "DetectObjects_Event",
     "DetectObjects_Request",
     "DetectObjects_Response",
+    "FollowPath",
+    "FollowPath_Event",
+    "FollowPath_Request",
+    "FollowPath_Response",
     "PlanFootsteps",
     "PlanFootsteps_Event",
     "PlanFootsteps_Request",
     "PlanFootsteps_Response",
+    "PlanPath",
+    "PlanPath_Event",
+    "PlanPath_Request",
+    "PlanPath_Response",
     "SolveIK",
     "SolveIK_Event",
     "SolveIK_Request",
@@ -68,10 +84,18 @@ __getattr__, __dir__ = lazy_exports(
         "DetectObjects_Event": "_detect_objects",
         "DetectObjects_Request": "_detect_objects",
         "DetectObjects_Response": "_detect_objects",
+        "FollowPath": "_follow_path",
+        "FollowPath_Event": "_follow_path",
+        "FollowPath_Request": "_follow_path",
+        "FollowPath_Response": "_follow_path",
         "PlanFootsteps": "_plan_footsteps",
         "PlanFootsteps_Event": "_plan_footsteps",
         "PlanFootsteps_Request": "_plan_footsteps",
         "PlanFootsteps_Response": "_plan_footsteps",
+        "PlanPath": "_plan_path",
+        "PlanPath_Event": "_plan_path",
+        "PlanPath_Request": "_plan_path",
+        "PlanPath_Response": "_plan_path",
         "SolveIK": "_solve_ik",
         "SolveIK_Event": "_solve_ik",
         "SolveIK_Request": "_solve_ik",

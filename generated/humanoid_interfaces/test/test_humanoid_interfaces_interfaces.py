@@ -29,6 +29,7 @@ import geometry_msgs.msg
 import humanoid_interfaces.action
 import humanoid_interfaces.msg
 import humanoid_interfaces.srv
+import nav_msgs.msg
 import sensor_msgs.msg
 import std_msgs.msg
 from hypothesis import HealthCheck, configuration, given, settings
@@ -338,6 +339,25 @@ humanoid_interfaces_srv_DetectObjects_Response = st.builds(
     message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
     detections=humanoid_interfaces_msg_DetectedObjectArray,
 )
+nav_msgs_msg_Path = st.builds(
+    nav_msgs.msg.Path,
+    header=std_msgs_msg_Header,
+    poses=some(geometry_msgs_msg_PoseStamped),
+)
+humanoid_interfaces_srv_FollowPath_Request = st.builds(
+    humanoid_interfaces.srv.FollowPath.Request,
+    start=humanoid_interfaces_msg_Stance,
+    path=nav_msgs_msg_Path,
+    first_leg=UINT8S,
+    first_index=UINT32S,
+    max_step_length=FLOAT64S,
+)
+humanoid_interfaces_srv_FollowPath_Response = st.builds(
+    humanoid_interfaces.srv.FollowPath.Response,
+    status=UINT8S,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    plan=humanoid_interfaces_msg_FootstepPlan,
+)
 humanoid_interfaces_srv_PlanFootsteps_Request = st.builds(
     humanoid_interfaces.srv.PlanFootsteps.Request,
     start=humanoid_interfaces_msg_Stance,
@@ -351,6 +371,17 @@ humanoid_interfaces_srv_PlanFootsteps_Response = st.builds(
     status=st.sampled_from([0, 1, 2, 3, 4, 5, 6]) | UINT8S,
     message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
     plan=humanoid_interfaces_msg_FootstepPlan,
+)
+humanoid_interfaces_srv_PlanPath_Request = st.builds(
+    humanoid_interfaces.srv.PlanPath.Request,
+    start=geometry_msgs_msg_PoseStamped,
+    goal=geometry_msgs_msg_PoseStamped,
+)
+humanoid_interfaces_srv_PlanPath_Response = st.builds(
+    humanoid_interfaces.srv.PlanPath.Response,
+    status=st.sampled_from([0, 1, 2, 3, 4, 5]) | UINT8S,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    path=nav_msgs_msg_Path,
 )
 humanoid_interfaces_srv_SolveIK_Request = st.builds(
     humanoid_interfaces.srv.SolveIK.Request,
@@ -813,6 +844,31 @@ CASES = [
         refused={"status": [-1, 256, "0"], "message": [0, "x" * 256], "detections": [None]},
     ),
     Case(
+        humanoid_interfaces.srv.FollowPath.Request,
+        humanoid_interfaces_srv_FollowPath_Request,
+        fields={
+            "start": "humanoid_interfaces/Stance",
+            "path": "nav_msgs/Path",
+            "first_leg": "uint8",
+            "first_index": "uint32",
+            "max_step_length": "double",
+        },
+        refused={
+            "start": [None],
+            "path": [None],
+            "first_leg": [-1, 256, "0"],
+            "first_index": [-1, 4294967296, "0"],
+            "max_step_length": ["0.0"],
+        },
+        nan={"max_step_length": NAN},
+    ),
+    Case(
+        humanoid_interfaces.srv.FollowPath.Response,
+        humanoid_interfaces_srv_FollowPath_Response,
+        fields={"status": "uint8", "message": "string<255>", "plan": "humanoid_interfaces/FootstepPlan"},
+        refused={"status": [-1, 256, "0"], "message": [0, "x" * 256], "plan": [None]},
+    ),
+    Case(
         humanoid_interfaces.srv.PlanFootsteps.Request,
         humanoid_interfaces_srv_PlanFootsteps_Request,
         fields={
@@ -845,6 +901,26 @@ CASES = [
             "STATUS_INVALID_REQUEST": 6,
         },
         refused={"status": [-1, 256, "0"], "message": [0, "x" * 256], "plan": [None]},
+    ),
+    Case(
+        humanoid_interfaces.srv.PlanPath.Request,
+        humanoid_interfaces_srv_PlanPath_Request,
+        fields={"start": "geometry_msgs/PoseStamped", "goal": "geometry_msgs/PoseStamped"},
+        refused={"start": [None], "goal": [None]},
+    ),
+    Case(
+        humanoid_interfaces.srv.PlanPath.Response,
+        humanoid_interfaces_srv_PlanPath_Response,
+        fields={"status": "uint8", "message": "string<255>", "path": "nav_msgs/Path"},
+        constants={
+            "STATUS_UNKNOWN": 0,
+            "STATUS_PLANNED": 1,
+            "STATUS_GOAL_OCCUPIED": 2,
+            "STATUS_BLOCKED": 3,
+            "STATUS_UNKNOWN_FRAME": 4,
+            "STATUS_INVALID_REQUEST": 5,
+        },
+        refused={"status": [-1, 256, "0"], "message": [0, "x" * 256], "path": [None]},
     ),
     Case(
         humanoid_interfaces.srv.SolveIK.Request,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
-from nav_msgs.msg import OccupancyGrid, Odometry, Path
-from nav_msgs.srv import GetPlan
+from humanoid_interfaces.srv import PlanPath
+from nav_msgs.msg import OccupancyGrid, Path
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
@@ -32,11 +32,6 @@ MAP_SUBSCRIPTION_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
-ODOM_SUBSCRIPTION_QOS = QoSProfile(
-    history=HistoryPolicy.KEEP_LAST,
-    depth=1,
-    reliability=ReliabilityPolicy.BEST_EFFORT,
-)
 
 
 class MotionPlannerBase(Node, ABC):
@@ -55,15 +50,10 @@ class MotionPlannerBase(Node, ABC):
 
     `/map`, nav_msgs/msg/OccupancyGrid.
     """
-    odom_subscription: Subscription[Odometry]
-    """Where the robot is; the start if a request has none
+    plan_path_service: Service[PlanPath]
+    """Plan a path between two poses, or say why there is none
 
-    `/odom`, nav_msgs/msg/Odometry.
-    """
-    plan_path_service: Service[GetPlan]
-    """Plan a path between two poses; empty if there is none
-
-    `/plan_path`, nav_msgs/srv/GetPlan.
+    `/plan_path`, humanoid_interfaces/srv/PlanPath.
     """
 
     def __init__(self, node_name: str = "motion_planner", **options: Any) -> None:
@@ -82,14 +72,8 @@ class MotionPlannerBase(Node, ABC):
             self.on_map,
             MAP_SUBSCRIPTION_QOS,
         )
-        self.odom_subscription = self.create_subscription(
-            Odometry,
-            "/odom",
-            self.on_odom,
-            ODOM_SUBSCRIPTION_QOS,
-        )
         self.plan_path_service = self.create_service(
-            GetPlan,
+            PlanPath,
             "/plan_path",
             self.handle_plan_path,
         )
@@ -109,17 +93,10 @@ class MotionPlannerBase(Node, ABC):
         """
 
     @abstractmethod
-    def on_odom(self, message: Odometry) -> None:
-        """Take a message from `/odom`.
-
-        Where the robot is; the start if a request has none
-        """
-
-    @abstractmethod
-    def handle_plan_path(self, request: GetPlan.Request, response: GetPlan.Response) -> GetPlan.Response:
+    def handle_plan_path(self, request: PlanPath.Request, response: PlanPath.Response) -> PlanPath.Response:
         """Answer a request to `/plan_path`.
 
-        Plan a path between two poses; empty if there is none
+        Plan a path between two poses, or say why there is none
         """
 
     def on_parameters_changed(self, parameters: MotionPlannerParameters) -> None:

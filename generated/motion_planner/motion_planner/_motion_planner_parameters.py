@@ -21,7 +21,7 @@ class MotionPlannerParameters:
     """The parameters of the node motion_planner."""
 
     clearance: float
-    """Distance kept from obstacles [m]
+    """From the middle of the body to an obstacle, half the robot's width included [m]
 
     Must be from 0.2 to 2.0.
     """
@@ -109,9 +109,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "clearance",
             Parameter.Type.DOUBLE,
-            0.35,
+            0.42,
             ParameterDescriptor(
-                description="Distance kept from obstacles [m]",
+                description="From the middle of the body to an obstacle, half the robot's width included [m]",
                 additional_constraints="must be from 0.2 to 2.0",
                 floating_point_range=[FloatingPointRange(from_value=0.2, to_value=2.0)],
             ),

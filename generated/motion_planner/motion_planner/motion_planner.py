@@ -1,68 +1,74 @@
-"""The node motion_planner: written once by ifgen, yours from then on.
-
-`ifgen run -m motion_planner.motion_planner` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node motion_planner: a path for the base round what is on the map, or the reason why there is none."""
 
 from __future__ import annotations
 
-import sys
+import math
 from typing import Any
 
-import rclpy
-from nav_msgs.msg import OccupancyGrid, Odometry, Path
-from nav_msgs.srv import GetPlan
-from rclpy.executors import ExternalShutdownException
+import numpy as np
+from humanoid.planning.routes import RouteStatus, disc_points, plan_route
+from humanoid.robot.scene import GROUND
+from humanoid.ros import messages
+from humanoid.ros.grids import path, read_occupancy_grid
+from humanoid.ros.running import run
+from humanoid_interfaces.srv import PlanPath
+from nav_msgs.msg import OccupancyGrid
 
 from motion_planner._motion_planner_base import MotionPlannerBase
 from motion_planner._motion_planner_parameters import ParametersError
 
+_FRAMES = ("", "odom")
+
 
 class MotionPlanner(MotionPlannerBase):
-    """Plans a path for the base between two poses on the map, wide enough for the robot."""
+    """Answers requests with the newest map. What it does not show is taken to be free."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
-        self.publish_plan(Path())
+        # What always stands in the scene, and is not seen as an obstacle.
+        self._furniture = np.concatenate([disc_points(obstacle) for obstacle in GROUND.obstacles])
+        self._points = self._furniture
 
     def on_map(self, message: OccupancyGrid) -> None:
-        """Take a message from `/map`.
+        """Take where obstacles are."""
+        try:
+            seen = read_occupancy_grid(message).occupied(self.parameters.occupied_from)
+        except ValueError as error:
+            self.get_logger().warning(f"/map: {error}", throttle_duration_sec=5.0)
+            return
+        self._points = np.concatenate([self._furniture, seen])
 
-        Where obstacles are
-        """
-        self.get_logger().debug("message on /map")
-
-    def on_odom(self, message: Odometry) -> None:
-        """Take a message from `/odom`.
-
-        Where the robot is; the start if a request has none
-        """
-        self.get_logger().debug("message on /odom")
-
-    def handle_plan_path(self, request: GetPlan.Request, response: GetPlan.Response) -> GetPlan.Response:
-        """Answer a request to `/plan_path`.
-
-        Plan a path between two poses; empty if there is none
-        """
+    def handle_plan_path(self, request: PlanPath.Request, response: PlanPath.Response) -> PlanPath.Response:
+        """Plan a path between two poses, or say why there is none."""
+        for what, pose in (("start", request.start), ("goal", request.goal)):
+            if pose.header.frame_id not in _FRAMES:
+                response.status = int(RouteStatus.UNKNOWN_FRAME)
+                response.message = f"the {what} is in '{pose.header.frame_id}'; I plan in odom"[:255]
+                return response
+        start, goal = (
+            tuple(float(part) for part in messages.planar(pose.pose))
+            for pose in (request.start, request.goal)
+        )
+        values = self.parameters
+        search = values.planner == "a_star"
+        route = plan_route(start[:2], goal[:2], self._points, values.clearance, search=search)
+        if route.status is RouteStatus.PLANNED and not math.isfinite(goal[2]):
+            response.status = int(RouteStatus.INVALID_REQUEST)
+            response.message = "the goal holds a number that is not finite"
+            return response
+        response.status = int(route.status)
+        response.message = route.message[:255]
+        if route.places:
+            response.path = path(route.places, goal[2], self.get_clock().now().nanoseconds)
+            self.publish_plan(response.path)
+        else:
+            self.get_logger().info(f"no path: {route.message}", throttle_duration_sec=5.0)
         return response
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = MotionPlanner()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"motion_planner: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(MotionPlanner, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -26,8 +26,8 @@ pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transpo
 
 import builtin_interfaces.msg
 import geometry_msgs.msg
+import humanoid_interfaces.srv
 import nav_msgs.msg
-import nav_msgs.srv
 import std_msgs.msg
 from hypothesis import HealthCheck, Phase, configuration, given, settings
 from hypothesis import strategies as st
@@ -74,7 +74,6 @@ def ignore(*_: Any) -> None:
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_map": idle,
-    "on_odom": idle,
     "handle_plan_path": idle,
     "on_parameters_changed": ignore,
 }
@@ -176,6 +175,7 @@ STRINGS = st.text(CHARACTERS, max_size=12)
 FLOAT64S = st.floats(allow_nan=False)
 FLOAT32S = st.floats(allow_nan=False, width=32)
 INT8S = st.integers(-128, 127)
+UINT8S = st.integers(0, 255)
 
 # The values of messages, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
@@ -217,36 +217,17 @@ nav_msgs_msg_OccupancyGrid = st.builds(
     info=nav_msgs_msg_MapMetaData,
     data=some(INT8S),
 )
-geometry_msgs_msg_PoseWithCovariance = st.builds(
-    geometry_msgs.msg.PoseWithCovariance,
-    pose=geometry_msgs_msg_Pose,
-    covariance=exactly(36, FLOAT64S),
-)
-geometry_msgs_msg_Vector3 = st.builds(geometry_msgs.msg.Vector3, x=FLOAT64S, y=FLOAT64S, z=FLOAT64S)
-geometry_msgs_msg_Twist = st.builds(
-    geometry_msgs.msg.Twist,
-    linear=geometry_msgs_msg_Vector3,
-    angular=geometry_msgs_msg_Vector3,
-)
-geometry_msgs_msg_TwistWithCovariance = st.builds(
-    geometry_msgs.msg.TwistWithCovariance,
-    twist=geometry_msgs_msg_Twist,
-    covariance=exactly(36, FLOAT64S),
-)
-nav_msgs_msg_Odometry = st.builds(
-    nav_msgs.msg.Odometry,
-    header=std_msgs_msg_Header,
-    child_frame_id=STRINGS,
-    pose=geometry_msgs_msg_PoseWithCovariance,
-    twist=geometry_msgs_msg_TwistWithCovariance,
-)
-nav_msgs_srv_GetPlan_Request = st.builds(
-    nav_msgs.srv.GetPlan.Request,
+humanoid_interfaces_srv_PlanPath_Request = st.builds(
+    humanoid_interfaces.srv.PlanPath.Request,
     start=geometry_msgs_msg_PoseStamped,
     goal=geometry_msgs_msg_PoseStamped,
-    tolerance=FLOAT32S,
 )
-nav_msgs_srv_GetPlan_Response = st.builds(nav_msgs.srv.GetPlan.Response, plan=nav_msgs_msg_Path)
+humanoid_interfaces_srv_PlanPath_Response = st.builds(
+    humanoid_interfaces.srv.PlanPath.Response,
+    status=st.sampled_from([0, 1, 2, 3, 4, 5]) | UINT8S,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    path=nav_msgs_msg_Path,
+)
 # fmt: on
 
 
@@ -288,15 +269,6 @@ SUBSCRIPTIONS = [
         "on_map",
         "map_subscription",
         nav_msgs_msg_OccupancyGrid,
-    ),
-    Topic(
-        "/odom",
-        "nav_msgs/msg/Odometry",
-        nav_msgs.msg.Odometry,
-        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
-        "on_odom",
-        "odom_subscription",
-        nav_msgs_msg_Odometry,
     ),
 ]
 # fmt: on
@@ -380,13 +352,13 @@ class ServiceCase:
 SERVICES = [
     ServiceCase(
         "/plan_path",
-        "nav_msgs/srv/GetPlan",
-        nav_msgs.srv.GetPlan,
+        "humanoid_interfaces/srv/PlanPath",
+        humanoid_interfaces.srv.PlanPath,
         None,
         "handle_plan_path",
         "plan_path_service",
-        nav_msgs_srv_GetPlan_Request,
-        nav_msgs_srv_GetPlan_Response,
+        humanoid_interfaces_srv_PlanPath_Request,
+        humanoid_interfaces_srv_PlanPath_Response,
     ),
 ]
 # fmt: on
@@ -449,10 +421,10 @@ PARAMETERS = [
     ParameterCase(
         "clearance",
         Parameter.Type.DOUBLE,
-        0.35,
-        [0.35, 0.2, 2.0, 1.1, 0.204, 1.96],
+        0.42,
+        [0.42, 0.2, 2.0, 1.1, 0.204, 1.96],
         [0.196, 2.04],
-        description="Distance kept from obstacles [m]",
+        description="From the middle of the body to an obstacle, half the robot's width included [m]",
         range=(0.2, 2.0),
     ),
     ParameterCase(

@@ -7,7 +7,8 @@ from typing import Any
 
 from humanoid_interfaces.action import WalkTo
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
-from humanoid_interfaces.srv import PlanFootsteps
+from humanoid_interfaces.srv import FollowPath, PlanPath
+from nav_msgs.msg import OccupancyGrid
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -44,12 +45,19 @@ EMERGENCY_STOP_SUBSCRIPTION_QOS = QoSProfile(
     reliability=ReliabilityPolicy.RELIABLE,
     durability=DurabilityPolicy.TRANSIENT_LOCAL,
 )
+MAP_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=1,
+    reliability=ReliabilityPolicy.RELIABLE,
+    durability=DurabilityPolicy.TRANSIENT_LOCAL,
+)
 
 
 class NavigationActionServerBase(Node, ABC):
-    """Walks to a pose. It requests footsteps, watches the robot take them, plans again when the robot has
-    strayed, and stops it within 2.5 s when the goal is cancelled. It walks to one goal at a time: a
-    newer goal takes over or is rejected, as `second_goal` says.
+    """Walks to a pose. It requests a path and footsteps along it, watches the robot take them, plans again
+    when the robot has strayed or something is in the way, stops while no way is free, and stops the
+    robot within 2.5 s when the goal is cancelled. It walks to one goal at a time: a newer goal takes
+    over or is rejected, as `second_goal` says.
     """
 
     parameters: NavigationActionServerParameters
@@ -70,8 +78,15 @@ class NavigationActionServerBase(Node, ABC):
 
     `/emergency_stop`, humanoid_interfaces/msg/EmergencyStop.
     """
-    plan_footsteps_client: Client[PlanFootsteps]
-    """`/plan_footsteps`, humanoid_interfaces/srv/PlanFootsteps."""
+    map_subscription: Subscription[OccupancyGrid]
+    """Where obstacles are: the path is planned anew when one is in the way
+
+    `/map`, nav_msgs/msg/OccupancyGrid.
+    """
+    plan_path_client: Client[PlanPath]
+    """`/plan_path`, humanoid_interfaces/srv/PlanPath."""
+    follow_path_client: Client[FollowPath]
+    """`/follow_path`, humanoid_interfaces/srv/FollowPath."""
     walk_to_action_server: ActionServer[WalkTo]
     """Walk to a pose; a cancel stops with the feet side by side
 
@@ -92,9 +107,14 @@ class NavigationActionServerBase(Node, ABC):
             "/footsteps/plan",
             FOOTSTEPS_PLAN_PUBLISHER_QOS,
         )
-        self.plan_footsteps_client = self.create_client(
-            PlanFootsteps,
-            "/plan_footsteps",
+        self.plan_path_client = self.create_client(
+            PlanPath,
+            "/plan_path",
+            callback_group=group,
+        )
+        self.follow_path_client = self.create_client(
+            FollowPath,
+            "/follow_path",
             callback_group=group,
         )
         self.gait_state_subscription = self.create_subscription(
@@ -109,6 +129,13 @@ class NavigationActionServerBase(Node, ABC):
             "/emergency_stop",
             self.on_emergency_stop,
             EMERGENCY_STOP_SUBSCRIPTION_QOS,
+            callback_group=group,
+        )
+        self.map_subscription = self.create_subscription(
+            OccupancyGrid,
+            "/map",
+            self.on_map,
+            MAP_SUBSCRIPTION_QOS,
             callback_group=group,
         )
         self.walk_to_action_server = ActionServer(
@@ -147,16 +174,38 @@ class NavigationActionServerBase(Node, ABC):
         Ends the goal and refuses new ones while it is active
         """
 
-    async def call_plan_footsteps(
+    @abstractmethod
+    async def on_map(self, message: OccupancyGrid) -> None:
+        """Take a message from `/map`.
+
+        Where obstacles are: the path is planned anew when one is in the way
+        """
+
+    async def call_plan_path(
         self,
-        request: PlanFootsteps.Request,
+        request: PlanPath.Request,
         *,
         timeout_sec: float = 5.0,
-    ) -> PlanFootsteps.Response:
-        """Call `/plan_footsteps`. TimeoutError without a response within `timeout_sec` [s]."""
-        response: PlanFootsteps.Response = await call(
+    ) -> PlanPath.Response:
+        """Call `/plan_path`. TimeoutError without a response within `timeout_sec` [s]."""
+        response: PlanPath.Response = await call(
             self,
-            self.plan_footsteps_client,
+            self.plan_path_client,
+            request,
+            timeout_sec,
+        )
+        return response
+
+    async def call_follow_path(
+        self,
+        request: FollowPath.Request,
+        *,
+        timeout_sec: float = 5.0,
+    ) -> FollowPath.Response:
+        """Call `/follow_path`. TimeoutError without a response within `timeout_sec` [s]."""
+        response: FollowPath.Response = await call(
+            self,
+            self.follow_path_client,
             request,
             timeout_sec,
         )

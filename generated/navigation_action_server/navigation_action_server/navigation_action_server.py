@@ -5,16 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 from humanoid import data
-from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, shorter
+from humanoid.control.pace import Pace
+from humanoid.planning.following import blocked_step
+from humanoid.planning.footsteps import PlanResult, PlanStatus, StepLimits, fitted, shorter
 from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
 from humanoid.robot.body import load_body
 from humanoid.robot.scene import GROUND
 from humanoid.ros import messages
+from humanoid.ros.grids import read_occupancy_grid
 from humanoid.ros.news import News
 from humanoid.ros.running import run
 from humanoid_interfaces.action import WalkTo
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState
-from humanoid_interfaces.srv import PlanFootsteps
+from humanoid_interfaces.srv import FollowPath, PlanPath
+from nav_msgs.msg import OccupancyGrid
 from rclpy.action import CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.task import Future
@@ -25,16 +29,17 @@ from navigation_action_server._navigation_action_server_parameters import Parame
 _FRAMES = ("", "odom")
 _SILENCE = 500_000_000  # ns of silence of the controller after which a goal is given up
 _BUSY = "I am already walking to another goal, and second_goal says reject"
-_PLANNED = (int(PlanStatus.PLANNED), int(PlanStatus.ALREADY_THERE))
+_PLANNED = {PlanStatus.PLANNED, PlanStatus.ALREADY_THERE}
+_BLOCKED = {PlanPath.Response.STATUS_BLOCKED, PlanPath.Response.STATUS_GOAL_OCCUPIED}
 
 
 class NavigationActionServer(NavigationActionServerBase):
-    """Asks the footstep server about a goal before it accepts it, and ends the goal by the gait state."""
+    """Asks the planners about a goal before it accepts it, and ends the goal by the gait state."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         body = load_body(self.parameters.model_file, self.parameters.joint_map)
-        self._limits = fitted(StepLimits(), body)
+        self._limits = fitted(StepLimits().at_pace(Pace(self.parameters.walking_speed)), body)
         self._gait: data.GaitState | None = None
         self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)
@@ -54,13 +59,26 @@ class NavigationActionServer(NavigationActionServerBase):
             walk.navigation.cancel()
         self._tick = tick = walk.navigation.update(self._gait)
         if tick.plan is not None:
-            walk.stopping = False  # it has held, and goes on
+            walk.stopping = False  # it has held, or waited for a way, and goes on
             self._send(tick.plan)
         elif tick.stop and not walk.stopping:
             walk.stopping = True
             self._halt()
         if tick.result is not None:
             self._end(walk, tick.result)
+
+    async def on_map(self, message: OccupancyGrid) -> None:
+        """Plan anew if something is in the way."""
+        try:
+            points = read_occupancy_grid(message).occupied()
+        except ValueError as error:
+            self.get_logger().warning(f"/map: {error}", throttle_duration_sec=5.0)
+            return
+        if self._walk is None or self._gait is None:
+            return
+        navigation = self._walk.navigation
+        if blocked_step(navigation.steps_ahead, points, self._gait.stance.centre, self._limits):
+            navigation.replan()
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
         """Remember whether goals can be accepted; the controller stops on its own and reports that."""
@@ -103,6 +121,8 @@ class NavigationActionServer(NavigationActionServerBase):
                 goal.yaw_tolerance or values.tolerance.yaw,
             ),
             replan_distance=values.replan_distance,
+            planner=_Ways(self, (x, y, yaw), goal.max_step_length).plan,
+            patience=values.patience,
             recovery_time=values.recovery_time,
         )
         if navigation.rejection:
@@ -156,16 +176,10 @@ class NavigationActionServer(NavigationActionServerBase):
             return _BUSY
         if goal.target.header.frame_id not in _FRAMES:
             return f"the goal is in '{goal.target.header.frame_id}'; I walk in odom"
-        request = PlanFootsteps.Request(
-            start=messages.stance(self._gait.stance, self._gait.stamp),
-            goal=goal.target,
-            max_step_length=goal.max_step_length,
-        )
-        try:
-            answer = await self.call_plan_footsteps(request, timeout_sec=self.parameters.service_timeout)
-        except TimeoutError as error:
-            return str(error)
-        return "" if answer.status in _PLANNED else str(answer.message)
+        x, y, yaw = (float(part) for part in messages.planar(goal.target.pose))
+        ways = _Ways(self, (x, y, yaw), goal.max_step_length)
+        answer = await ways.ask(self._gait.stance, None, self._gait.footstep_index)
+        return "" if answer.status in _PLANNED else answer.message
 
     def _send(self, plan: data.FootstepPlan) -> None:
         assert self._gait is not None
@@ -199,6 +213,66 @@ class NavigationActionServer(NavigationActionServerBase):
             steps=max(result.steps, 0),
             time=messages.duration_of(result.time),
         )
+
+
+class _Ways:
+    """Plans to one goal: a path from motion_planner, and the steps along it from footstep_planner."""
+
+    def __init__(
+        self, node: NavigationActionServer, goal: tuple[float, float, float], max_step_length: float
+    ) -> None:
+        self._node, self._goal, self._longest = node, goal, max_step_length
+        self._answer: tuple[tuple[data.Leg | None, int], PlanResult] | None = None
+        self._asks = False
+
+    def plan(self, start: data.Stance, first_leg: data.Leg | None, first_index: int) -> PlanResult | None:
+        """The plan from a step on, or None: then it is asked for, and will be there at a later call."""
+        answer, self._answer = self._answer, None
+        if answer is not None and answer[0] == (first_leg, first_index):
+            return answer[1]
+        if not self._asks and self._node.executor is not None:
+            self._asks = True
+            self._node.executor.create_task(self._keep(start, first_leg, first_index))
+        return None
+
+    async def _keep(self, start: data.Stance, first_leg: data.Leg | None, first_index: int) -> None:
+        answer = await self.ask(start, first_leg, first_index)
+        self._answer, self._asks = ((first_leg, first_index), answer), False
+
+    async def ask(self, start: data.Stance, first_leg: data.Leg | None, first_index: int) -> PlanResult:
+        """Ask both; a server that does not answer is a status UNKNOWN."""
+        result = await self._ask_once(start, first_leg, first_index)
+        if result.status is PlanStatus.BLOCKED:  # perhaps the map has changed between the two
+            result = await self._ask_once(start, first_leg, first_index)
+        return result
+
+    async def _ask_once(self, start: data.Stance, first_leg: data.Leg | None, first_index: int) -> PlanResult:
+        nothing = data.FootstepPlan(0, (), self._goal)
+        now = int(self._node.get_clock().now().nanoseconds)
+        timeout = self._node.parameters.service_timeout
+        request = PlanPath.Request(
+            start=messages.stamped(now, messages.planar_pose(*start.centre.tolist())),
+            goal=messages.stamped(now, messages.planar_pose(*self._goal)),
+        )
+        try:
+            way = await self._node.call_plan_path(request, timeout_sec=timeout)
+            if way.status != PlanPath.Response.STATUS_PLANNED:
+                blocked = way.status in _BLOCKED
+                status = PlanStatus.BLOCKED if blocked else PlanStatus.INVALID_REQUEST
+                return PlanResult(status, str(way.message), nothing)
+            follow = FollowPath.Request(
+                start=messages.stance(start, now),
+                path=way.path,
+                first_leg=int(first_leg or 0),
+                first_index=first_index,
+                max_step_length=self._longest,
+            )
+            steps = await self._node.call_follow_path(follow, timeout_sec=timeout)
+        except TimeoutError as error:
+            return PlanResult(PlanStatus.UNKNOWN, str(error), nothing)
+        known = steps.status in list(PlanStatus)
+        status = PlanStatus(steps.status) if known else PlanStatus.UNKNOWN
+        return PlanResult(status, str(steps.message), messages.read_footstep_plan(steps.plan))
 
 
 class _Walk:

@@ -32,6 +32,7 @@ import geometry_msgs.msg
 import humanoid_interfaces.action
 import humanoid_interfaces.msg
 import humanoid_interfaces.srv
+import nav_msgs.msg
 import std_msgs.msg
 from action_msgs.msg import GoalStatus
 from hypothesis import HealthCheck, Phase, configuration, given, settings
@@ -60,8 +61,12 @@ Strategy: TypeAlias = st.SearchStrategy[Any]
 # fmt: off
 # The services that the node calls. They answer with defaults where a test wants nothing else.
 ASKED_SERVICES: dict[str, tuple[Any, QoSProfile | None]] = {
-    "/plan_footsteps": (
-        humanoid_interfaces.srv.PlanFootsteps,
+    "/plan_path": (
+        humanoid_interfaces.srv.PlanPath,
+        None,
+    ),
+    "/follow_path": (
+        humanoid_interfaces.srv.FollowPath,
         None,
     ),
 }
@@ -110,6 +115,7 @@ def ignore(*_: Any) -> None:
 IDLE: dict[str, Any] = {
     "on_gait_state": idle,
     "on_emergency_stop": idle,
+    "on_map": idle,
     "accept_walk_to": accept,
     "cancel_walk_to": idle,
     "execute_walk_to": ending(humanoid_interfaces.action.WalkTo),
@@ -215,6 +221,7 @@ UINT8S = st.integers(0, 255)
 FLOAT64S = st.floats(allow_nan=False)
 FLOAT32S = st.floats(allow_nan=False, width=32)
 BOOLEANS = st.booleans()
+INT8S = st.integers(-128, 127)
 
 # The values of messages, one line a field; those that others need come first.
 builtin_interfaces_msg_Time = st.builds(builtin_interfaces.msg.Time, sec=INT32S, nanosec=UINT32S)
@@ -273,22 +280,52 @@ humanoid_interfaces_msg_EmergencyStop = st.builds(
     source=st.text(CHARACTERS, max_size=128) | st.just("x" * 128),
     reason=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
 )
+nav_msgs_msg_MapMetaData = st.builds(
+    nav_msgs.msg.MapMetaData,
+    map_load_time=builtin_interfaces_msg_Time,
+    resolution=FLOAT32S,
+    width=UINT32S,
+    height=UINT32S,
+    origin=geometry_msgs_msg_Pose,
+)
+nav_msgs_msg_OccupancyGrid = st.builds(
+    nav_msgs.msg.OccupancyGrid,
+    header=std_msgs_msg_Header,
+    info=nav_msgs_msg_MapMetaData,
+    data=some(INT8S),
+)
 geometry_msgs_msg_PoseStamped = st.builds(
     geometry_msgs.msg.PoseStamped,
     header=std_msgs_msg_Header,
     pose=geometry_msgs_msg_Pose,
 )
-humanoid_interfaces_srv_PlanFootsteps_Request = st.builds(
-    humanoid_interfaces.srv.PlanFootsteps.Request,
-    start=humanoid_interfaces_msg_Stance,
+humanoid_interfaces_srv_PlanPath_Request = st.builds(
+    humanoid_interfaces.srv.PlanPath.Request,
+    start=geometry_msgs_msg_PoseStamped,
     goal=geometry_msgs_msg_PoseStamped,
-    first_leg=UINT8S,
-    max_step_length=FLOAT64S,
-    step_time=builtin_interfaces_msg_Duration,
 )
-humanoid_interfaces_srv_PlanFootsteps_Response = st.builds(
-    humanoid_interfaces.srv.PlanFootsteps.Response,
-    status=st.sampled_from([0, 1, 2, 3, 4, 5, 6]) | UINT8S,
+nav_msgs_msg_Path = st.builds(
+    nav_msgs.msg.Path,
+    header=std_msgs_msg_Header,
+    poses=some(geometry_msgs_msg_PoseStamped),
+)
+humanoid_interfaces_srv_PlanPath_Response = st.builds(
+    humanoid_interfaces.srv.PlanPath.Response,
+    status=st.sampled_from([0, 1, 2, 3, 4, 5]) | UINT8S,
+    message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
+    path=nav_msgs_msg_Path,
+)
+humanoid_interfaces_srv_FollowPath_Request = st.builds(
+    humanoid_interfaces.srv.FollowPath.Request,
+    start=humanoid_interfaces_msg_Stance,
+    path=nav_msgs_msg_Path,
+    first_leg=UINT8S,
+    first_index=UINT32S,
+    max_step_length=FLOAT64S,
+)
+humanoid_interfaces_srv_FollowPath_Response = st.builds(
+    humanoid_interfaces.srv.FollowPath.Response,
+    status=UINT8S,
     message=st.text(CHARACTERS, max_size=255) | st.just("x" * 255),
     plan=humanoid_interfaces_msg_FootstepPlan,
 )
@@ -365,6 +402,15 @@ SUBSCRIPTIONS = [
         "on_emergency_stop",
         "emergency_stop_subscription",
         humanoid_interfaces_msg_EmergencyStop,
+    ),
+    Topic(
+        "/map",
+        "nav_msgs/msg/OccupancyGrid",
+        nav_msgs.msg.OccupancyGrid,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        "on_map",
+        "map_subscription",
+        nav_msgs_msg_OccupancyGrid,
     ),
 ]
 # fmt: on
@@ -447,14 +493,24 @@ class ServiceCase:
 # fmt: off
 CLIENTS = [
     ServiceCase(
-        "/plan_footsteps",
-        "humanoid_interfaces/srv/PlanFootsteps",
-        humanoid_interfaces.srv.PlanFootsteps,
+        "/plan_path",
+        "humanoid_interfaces/srv/PlanPath",
+        humanoid_interfaces.srv.PlanPath,
         None,
-        "call_plan_footsteps",
-        "plan_footsteps_client",
-        humanoid_interfaces_srv_PlanFootsteps_Request,
-        humanoid_interfaces_srv_PlanFootsteps_Response,
+        "call_plan_path",
+        "plan_path_client",
+        humanoid_interfaces_srv_PlanPath_Request,
+        humanoid_interfaces_srv_PlanPath_Response,
+    ),
+    ServiceCase(
+        "/follow_path",
+        "humanoid_interfaces/srv/FollowPath",
+        humanoid_interfaces.srv.FollowPath,
+        None,
+        "call_follow_path",
+        "follow_path_client",
+        humanoid_interfaces_srv_FollowPath_Request,
+        humanoid_interfaces_srv_FollowPath_Response,
     ),
 ]
 # fmt: on
@@ -723,6 +779,16 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "walking_speed",
+        Parameter.Type.DOUBLE,
+        0.5,
+        [0.5, 0.1, 0.3, 0.102, 0.49],
+        [0.098, 0.51],
+        description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
+        read_only=True,
+        range=(0.1, 0.5),
+    ),
+    ParameterCase(
         "model_file",
         Parameter.Type.STRING,
         "",
@@ -785,12 +851,21 @@ PARAMETERS = [
         range=(0.005, 1.0),
     ),
     ParameterCase(
+        "patience",
+        Parameter.Type.DOUBLE,
+        30.0,
+        [30.0, 0.0, 3600.0, 1800.0, 0.001, 3528.0],
+        [-0.001, 3672.0],
+        description="How long to wait for a way to become free before a goal is given up [s]",
+        range=(0.0, 3600.0),
+    ),
+    ParameterCase(
         "service_timeout",
         Parameter.Type.DOUBLE,
         1.0,
         [1.0, 0.05, 10.0, 5.025, 0.051, 9.8],
         [0.049, 10.2],
-        description="How long to wait for footsteps [s]",
+        description="How long to wait for a path, and for footsteps [s]",
         range=(0.05, 10.0),
     ),
 ]

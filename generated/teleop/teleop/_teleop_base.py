@@ -20,7 +20,7 @@ from std_srvs.srv import SetBool
 
 from teleop._teleop_parameters import TeleopParameters, declare_parameters, read_parameters
 
-HUMANOID_CMD_VEL_PUBLISHER_QOS = QoSProfile(
+TELEOP_VELOCITY_PUBLISHER_QOS = QoSProfile(
     history=HistoryPolicy.KEEP_LAST,
     depth=1,
     reliability=ReliabilityPolicy.RELIABLE,
@@ -41,10 +41,10 @@ class TeleopBase(Node, ABC):
     parameters: TeleopParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
 
-    humanoid_cmd_vel_publisher: Publisher[Twist]
+    teleop_velocity_publisher: Publisher[Twist]
     """Wanted velocity in base_footprint
 
-    `/humanoid/cmd_vel`, geometry_msgs/msg/Twist.
+    `/teleop/velocity`, geometry_msgs/msg/Twist.
     """
     joy_subscription: Subscription[Joy]
     """Axes and buttons
@@ -61,10 +61,10 @@ class TeleopBase(Node, ABC):
         super().__init__(node_name, **options)
         self.parameters = declare_parameters(self)
         self.add_post_set_parameters_callback(self._replace_parameters)
-        self.humanoid_cmd_vel_publisher = self.create_publisher(
+        self.teleop_velocity_publisher = self.create_publisher(
             Twist,
-            "/humanoid/cmd_vel",
-            HUMANOID_CMD_VEL_PUBLISHER_QOS,
+            "/teleop/velocity",
+            TELEOP_VELOCITY_PUBLISHER_QOS,
         )
         self.emergency_stop_set_client = self.create_client(
             SetBool,
@@ -81,12 +81,12 @@ class TeleopBase(Node, ABC):
             self.on_command_timer,
         )
 
-    def publish_humanoid_cmd_vel(self, message: Twist) -> None:
-        """Publish on `/humanoid/cmd_vel`.
+    def publish_teleop_velocity(self, message: Twist) -> None:
+        """Publish on `/teleop/velocity`.
 
         Wanted velocity in base_footprint
         """
-        self.humanoid_cmd_vel_publisher.publish(message)
+        self.teleop_velocity_publisher.publish(message)
 
     @abstractmethod
     def on_joy(self, message: Joy) -> None:

@@ -53,7 +53,7 @@ class Teleop(TeleopBase):
         if steers or self._steering:
             forward, sideways, turn = velocity
             message = Twist(linear=Vector3(x=forward, y=sideways), angular=Vector3(z=turn))
-            self.publish_humanoid_cmd_vel(message)
+            self.publish_teleop_velocity(message)
         self._steering = steers
 
     def _now(self) -> int:

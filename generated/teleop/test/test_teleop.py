@@ -14,7 +14,7 @@ pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transpo
 
 from geometry_msgs.msg import Twist
 from sensor_msgs.msg import Joy
-from teleop._teleop_base import HUMANOID_CMD_VEL_PUBLISHER_QOS, JOY_SUBSCRIPTION_QOS
+from teleop._teleop_base import JOY_SUBSCRIPTION_QOS, TELEOP_VELOCITY_PUBLISHER_QOS
 from teleop.teleop import Teleop
 
 HELD, FORWARD = 4, 1  # numbers of a button and an axis
@@ -30,7 +30,7 @@ def test_the_dead_mans_button_steers_and_silence_stops(ros: Any) -> None:
     ros.start(Teleop)
     joy = ros.peer.create_publisher(Joy, "/joy", JOY_SUBSCRIPTION_QOS)
     heard: list[Twist] = []
-    ros.peer.create_subscription(Twist, "/humanoid/cmd_vel", heard.append, HUMANOID_CMD_VEL_PUBLISHER_QOS)
+    ros.peer.create_subscription(Twist, "/teleop/velocity", heard.append, TELEOP_VELOCITY_PUBLISHER_QOS)
 
     def push() -> None:
         joy.publish(joystick(1.0, held=True))
@@ -45,7 +45,7 @@ def test_whoever_holds_no_joystick_leaves_the_robot_to_others(ros: Any) -> None:
     ros.start(Teleop)
     joy = ros.peer.create_publisher(Joy, "/joy", JOY_SUBSCRIPTION_QOS)
     heard: list[Twist] = []
-    ros.peer.create_subscription(Twist, "/humanoid/cmd_vel", heard.append, HUMANOID_CMD_VEL_PUBLISHER_QOS)
+    ros.peer.create_subscription(Twist, "/teleop/velocity", heard.append, TELEOP_VELOCITY_PUBLISHER_QOS)
     for _ in range(20):
         joy.publish(joystick(1.0, held=False))
         ros.pass_time(0.1)

@@ -232,12 +232,12 @@ class Topic:
 # fmt: off
 PUBLISHERS = [
     Topic(
-        "/humanoid/cmd_vel",
+        "/teleop/velocity",
         "geometry_msgs/msg/Twist",
         geometry_msgs.msg.Twist,
         QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, lifespan=Duration(nanoseconds=500_000_000)),
-        "publish_humanoid_cmd_vel",
-        "humanoid_cmd_vel_publisher",
+        "publish_teleop_velocity",
+        "teleop_velocity_publisher",
         geometry_msgs_msg_Twist,
     ),
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from types import TracebackType
@@ -15,6 +15,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Task
 
+from ..robot.obstacles import Solid, words_of
 from ..show import crew
 from ..show.director import Say
 from .alone import alone
@@ -42,7 +43,8 @@ class Played(Generic[Result]):
 class NodeGraph:
     """The nodes of `crew.GROUPS`, connected only by messages; one graph at a time: it owns the context.
 
-    Nodes that run only on demand are left out, as in `ifgen demo`: the robot waves at faces that it sees.
+    Only a robot that `sees` has a camera, a map, and the detection of faces: drawing takes time. `solids` are
+    obstacles.
 
     `true_state` lets the controller use ground truth as odometry.
     """
@@ -54,16 +56,18 @@ class NodeGraph:
         noise: bool = True,
         true_state: bool = False,
         say: Say = lambda what: None,
+        solids: Sequence[Solid] = (),
+        sees: bool = False,
     ) -> None:
         # Python handles Ctrl-C: it ends the scenario at once.
         with alone():
             rclpy.init(args=_TRUE_STATE if true_state else [], signal_handler_options=SignalHandlerOptions.NO)
         self.executor = SingleThreadedExecutor()
         self.user = User(say)
-        _, *others = chain.from_iterable(crew.members(group, with_extra=False) for group in crew.GROUPS)
-        nodes = crew.make(others, {})
+        _, *others = chain.from_iterable(crew.members(group, with_extra=sees) for group in crew.GROUPS)
+        nodes = crew.make(others, {"camera_driver": {"streaming": sees}})
         # Made last, so that all nodes receive its first readings and need not wait until it repeats them.
-        first = make_simulator(seed=seed, noise=noise)
+        first = make_simulator(seed=seed, noise=noise, obstacles=[words_of(solid) for solid in solids])
         self.nodes = [first, *nodes, self.user]
         for node in self.nodes:
             self.executor.add_node(node)
