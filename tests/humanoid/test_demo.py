@@ -181,53 +181,33 @@ def test_mistakes_in_a_scenario_of_ones_own_are_one_sentence(name: str, tmp_path
     refused(["--headless", "--scenario", str(scenario)], expected)
 
 
-MINE = """
-from gait_planner._gait_planner_base import GaitPlannerBase
-from humanoid_interfaces.msg import FootstepPlan
-
-
-class Mine(GaitPlannerBase):
-    def __init__(self, **options):
-        super().__init__(**options)
-        self.upcoming = FootstepPlan()
-
-    def on_footsteps_plan(self, message):
-        if message.steps != self.upcoming.steps:
-            message.plan_id = self.upcoming.plan_id + 1
-            self.upcoming = message
-
-    def on_gait_state(self, message): ...
-
-    def on_humanoid_cmd_vel(self, message): ...
-
-    def handle_clear(self, request, response):
-        self.on_footsteps_plan(FootstepPlan())
-        return response
-
-    def on_sign_of_life_timer(self):
-        self.publish_footsteps_upcoming(self.upcoming)
-
-    def on_diagnostics_timer(self): ...
-"""
+PAGE = Path(__file__).parents[2] / "docs" / "humanoid.md"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_real)])
-def test_somebodys_own_gait_planner_walks(transport: str, tmp_path: Path) -> None:
+@needs_real
+def test_the_gait_planner_of_the_page_walks_on_real_rclpy(tmp_path: Path) -> None:
     file, scenario = tmp_path / "mine.py", tmp_path / "short.yaml"
-    file.write_text(MINE)
+    (text,) = re.findall(r"<!-- file: my_gait.py -->\n```python\n(.*?)```\n", PAGE.read_text(), re.DOTALL)
+    file.write_text(text)
     scenario.write_text(SHORT)
-    words = ("--replace", f"gait_planner={file}", "--without", "teleop", "--transport", transport)
+    words = ("--replace", f"gait_planner={file}", "--without", "teleop", "--transport", "rclpy")
     summary = demo("--scenario", str(scenario), *words)
     assert (summary["outcome"], summary["falls"]) == ("done", "0")
     assert float(summary["goal error"].split()[0]) < 60
 
 
-def test_a_second_robot_in_the_same_domain_is_refused() -> None:
+def test_a_second_robot_in_the_same_domain_is_refused(tmp_path: Path) -> None:
     with own_domain() as domain:
         environment = {**os.environ, "ROS_DOMAIN_ID": str(domain)}
         command = [sys.executable, "-m", "ifgen", "demo", "--headless", "--idle"]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as first:
+        heard = tmp_path / "heard"
+        with (
+            heard.open("w") as log,
+            subprocess.Popen(
+                command, stdout=subprocess.PIPE, stderr=log, text=True, env=environment
+            ) as first,
+        ):
             assert first.stdout is not None
             try:
                 assert first.stdout.readline().startswith("waking up")
@@ -238,6 +218,8 @@ def test_a_second_robot_in_the_same_domain_is_refused() -> None:
             finally:
                 first.send_signal(signal.SIGINT)
             assert first.wait(30) == 130
+        # Nothing that the second one published has reached the first.
+        assert "refused" not in heard.read_text()
     assert second.returncode == 1
     assert second.stderr == (
         f"error: another simulation runs in ROS domain {domain}: end it, or choose another domain, "

@@ -35,8 +35,11 @@ SIMULATOR = "humanoid_simulator"
 EXTRA = ("camera_driver", "face_detection", "obstacle_mapper")
 """Nodes that run only where the robot sees."""
 
+PHYSICS = "physics"
+"""The group that makes time; a timer paces it, to the millisecond."""
+
 GROUPS: dict[str, tuple[str, ...]] = {
-    "physics": (SIMULATOR,),
+    PHYSICS: (SIMULATOR,),
     "motion": (
         "joint_state_publisher",
         "imu_fusion",
@@ -79,8 +82,6 @@ WITH_BODY = (
 """Nodes that load the robot's model: their parameters `model_file` and `joint_map` say which."""
 
 ALL = "all"
-
-_PACED = "physics"  # the group that a timer paces, to the millisecond
 
 
 def make(
@@ -144,7 +145,7 @@ def main() -> None:
         threading.Thread(target=_end_with_parent, daemon=True).start()
         rclpy.init(args=[])
         with until_shutdown():
-            executor = SingleThreadedExecutor() if group == _PACED else quick_executor.make()
+            executor = SingleThreadedExecutor() if group == PHYSICS else quick_executor.make()
             nodes += make(names or GROUPS[group], json.loads(parameters), json.loads(replaced))
             for node in nodes:
                 executor.add_node(node)

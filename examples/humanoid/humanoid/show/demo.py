@@ -149,13 +149,13 @@ class _Show:
         groups = {group: self._members(group) for group in crew.GROUPS}
         if options.transport == "local":
             # The simulator last, so that everybody hears its first readings, and nobody waits for others.
-            last_first = reversed(groups.values())
-            names = chain.from_iterable(last_first)
-            self._nodes += crew.make(names, self._parameters(), self._replaced)
-            self._refuse_company(1)
+            physics = groups.pop(crew.PHYSICS)
+            self._nodes += crew.make(chain(*reversed(groups.values())), self._parameters(), self._replaced)
+            self._refuse_company(physics)  # before its first readings reach another robot
+            self._nodes += crew.make(physics, self._parameters(), self._replaced)
         else:
             time.sleep(_DISCOVERY)
-            self._refuse_company(0)
+            self._refuse_company(groups[crew.PHYSICS])
             documents = [json.dumps(self._parameters()), json.dumps(self._replaced)]
             started = (parts.start([*documents, group, *names]) for group, names in groups.items())
             self._processes = list(started)
@@ -164,9 +164,9 @@ class _Show:
         for node in self._nodes:
             self._executor.add_node(node)
 
-    def _refuse_company(self, own: int) -> None:
+    def _refuse_company(self, physics: tuple[str, ...]) -> None:
         """Refuse to run beside another robot: both would hear each other. Raises _CompanyError."""
-        if self._director.count_publishers("/clock") > own:
+        if self._director.count_publishers("/clock") > (0 if physics else 1):
             domain = self._director.context.get_domain_id()
             raise _CompanyError(
                 f"another simulation runs in ROS domain {domain}: end it, or choose another domain, such as "
