@@ -96,7 +96,7 @@ def test_steps_along_random_routes_keep_away_and_are_steps_that_legs_can_take() 
             assert after is None or after.leg is step.leg.other
             ahead, aside = to_frame(feet[step.leg.other.side], step.pose[:2])
             assert 0.10 < step.leg.sign * aside < 0.32
-            assert abs(ahead) < 0.30
+            assert abs(ahead) < LIMITS.forward + 0.05
             assert abs(wrap(step.yaw - feet[step.leg.other.side][2])) < 0.4
             feet[step.leg.side] = step.pose
         assert blocked_step(steps, points, HERE.centre, LIMITS) == ""
