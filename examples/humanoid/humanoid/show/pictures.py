@@ -16,7 +16,7 @@ from ..simulation.rendering import Picture, RenderingError, image
 
 _INK, _PAPER = (255, 255, 255), (28, 33, 40)
 _LINE = 0.062  # height of the letters, as a share of that of the picture
-_COLOURS, _BRIGHT_COLOURS = 40, 12
+_COLOURS, _BRIGHT_COLOURS = 56, 12
 _BRIGHT = 90  # difference of the greatest and the least part of a colour
 _SAMPLES = 16  # pictures that a palette is made of
 _FFMPEG = (
