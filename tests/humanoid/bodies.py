@@ -61,6 +61,20 @@ def offset_hips() -> str:
     return ElementTree.tostring(root, encoding="unicode")
 
 
+def only_legs() -> str:
+    """Two legs and a pelvis, as heavy as the rest of our robot: nothing above them moves."""
+    root = ElementTree.fromstring(write_mjcf())
+    base = next(body for body in root.iter("body") if body.attrib["name"] == "base_link")
+    for body in base.findall("body"):
+        if "hip" not in body.attrib["name"]:
+            base.remove(body)
+    trunk = {"type": "box", "size": "0.07 0.11 0.2", "pos": "0.0 0.0 0.26", "mass": "16.0"}
+    ElementTree.SubElement(base, "geom", **trunk)
+    for tag in ("actuator", "sensor"):
+        root.remove(root.find(tag) or ElementTree.Element(""))
+    return ElementTree.tostring(root, encoding="unicode")
+
+
 def _joint(body: ElementTree.Element) -> ElementTree.Element:
     joint = body.find("joint")
     assert joint is not None

@@ -16,16 +16,17 @@ from humanoid.kinematics.dynamics import RobotState
 from humanoid.kinematics.head import HeadMode, HeadPose
 from humanoid.kinematics.ik import IkRequest, IkStatus, InverseKinematics
 from humanoid.kinematics.legs import Legs
+from humanoid.planning.dance import problem
 from humanoid.robot import table
 from humanoid.robot.body import OURS
 from humanoid.robot.description import describe_robot
 from humanoid.robot.external import load_external
 from humanoid.robot.joint_map import ModelError
-from humanoid.robot.model import HumanoidModel
+from humanoid.robot.model import HumanoidModel, load
 from humanoid.simulation.sim import Noise
 from humanoid.trials.harness import Lockstep
 
-from .bodies import offset_hips, shorter_legs
+from .bodies import offset_hips, only_legs, shorter_legs
 
 
 def loaded(folder: Path, text: str) -> HumanoidModel:
@@ -74,7 +75,8 @@ def test_heights_come_from_the_legs(tmp_path: Path) -> None:
     assert abs(model.body.leg_length - (0.8 * 0.6 + 0.06)) < 1e-6
     parameters = fitted(GaitParameters(), model)
     # As far below where straight legs hold it as ours, by the scale of the legs.
-    assert abs((model.straight_height - parameters.com_height) / model.body.scale - 0.0223) < 1e-3
+    ours = load().straight_height - GaitParameters().com_height
+    assert abs((model.straight_height - parameters.com_height) / model.body.scale - ours) < 1e-3
     joints, base = start(model)
     state = RobotState(model)
     state.set_posture(base, np.array([0.0, 0.0, 0.0, 1.0]), joints)
@@ -159,6 +161,17 @@ def test_its_description_is_the_same_robot(tmp_path: Path, text: str) -> None:
             assert np.abs(data.body(name).xpos - ours.site_xpos[site]).max() < 1e-9
             assert np.abs(data.body(name).xmat - ours.site_xmat[site]).max() < 1e-9
         assert np.abs(data.subtree_com[0] - ours.subtree_com[model.base]).max() < 1e-9
+
+
+def test_two_legs_are_enough(tmp_path: Path) -> None:
+    model = loaded(tmp_path, only_legs())
+    assert model.body.joints == table.JOINT_NAMES[:12]
+    assert problem("wave", 0.0, body=model.body) == "the robot has no joint r_elbow, which 'wave' moves"
+    robot = Lockstep(model, seed=1, noise=Noise())
+    robot.run(0.5)
+    assert robot.go_to((0.4, 0.0, 0.0)) < 0.03
+    assert not robot.fell
+    assert robot.foot_error()[0] <= 0.020
 
 
 @pytest.mark.slow

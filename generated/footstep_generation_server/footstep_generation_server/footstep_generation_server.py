@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from humanoid import data
+from humanoid.control.pace import Pace
 from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, plan_footsteps, shorter
 from humanoid.robot.body import load_body
 from humanoid.robot.scene import GROUND
@@ -68,17 +69,15 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
     def _limits(self, request: PlanFootsteps.Request) -> StepLimits:
         """The limits of the parameters, reduced if the request asks for less."""
         step = self.parameters.step
-        single_support = max(step.period - 0.2, 0.3)
         usual = StepLimits(
-            forward=step.length_max,
             backward=step.backward_max,
             sideways=step.sideways_max,
             turn=step.turn_max,
             trailing_turn=step.turn_max / 2,
             width=self.parameters.stance_width,
-            step_time=messages.nanoseconds(request.step_time) / data.SECOND or single_support,
-        )
-        return shorter(fitted(usual, self._body), request.max_step_length)
+        ).at_pace(Pace(self.parameters.walking_speed))
+        wanted = messages.nanoseconds(request.step_time) / data.SECOND or usual.step_time
+        return shorter(fitted(replace(usual, step_time=wanted), self._body), request.max_step_length)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -304,6 +304,16 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "walking_speed",
+        Parameter.Type.DOUBLE,
+        0.5,
+        [0.5, 0.1, 0.3, 0.102, 0.49],
+        [0.098, 0.51],
+        description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
+        read_only=True,
+        range=(0.1, 0.5),
+    ),
+    ParameterCase(
         "model_file",
         Parameter.Type.STRING,
         "",
@@ -320,15 +330,6 @@ PARAMETERS = [
         [],
         description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
         read_only=True,
-    ),
-    ParameterCase(
-        "step.length_max",
-        Parameter.Type.DOUBLE,
-        0.18,
-        [0.18, 0.02, 0.3, 0.16, 0.021, 0.294],
-        [0.019, 0.306],
-        description="Longest forward step if the request names none [m]",
-        range=(0.02, 0.3),
     ),
     ParameterCase(
         "step.backward_max",
@@ -352,19 +353,10 @@ PARAMETERS = [
         "step.turn_max",
         Parameter.Type.DOUBLE,
         0.3,
-        [0.3, 0.05, 0.5, 0.275, 0.051, 0.49],
-        [0.049, 0.51],
+        [0.3, 0.05, 0.4, 0.225, 0.051, 0.392],
+        [0.049, 0.408],
         description="Largest turn per step [rad]",
-        range=(0.05, 0.5),
-    ),
-    ParameterCase(
-        "step.period",
-        Parameter.Type.DOUBLE,
-        0.8,
-        [0.8, 0.45, 3.0, 1.725, 0.459, 2.94],
-        [0.441, 3.06],
-        description="Time of a step if the request names none [s]",
-        range=(0.45, 3.0),
+        range=(0.05, 0.4),
     ),
     ParameterCase(
         "stance_width",

@@ -20,31 +20,15 @@ class ParametersError(Exception):
 class StepParameters:
     """The parameters `step.*`."""
 
-    length_max: float
-    """Longest forward step while the robot is steered by velocity [m]
-
-    Must be from 0.02 to 0.34. Can be set at start only.
-    """
     sideways_max: float
     """Widest sideways step while it is steered, beyond the stance width [m]
 
-    Must be from 0.0 to 0.15. Can be set at start only.
+    Must be from 0.0 to 0.12. Can be set at start only.
     """
     turn_max: float
     """Largest turn per step while it is steered; the leg that follows turns half as far [rad]
 
-    Must be from 0.05 to 0.5. Can be set at start only.
-    """
-    single_support_time: float
-    """Time on one foot, in steps that do not come from a plan [s]
-
-    Must be from 0.35 to 3.0. Can be set at start only.
-    """
-    double_support_time: float
-    """Time on both feet that whole_body_controller takes; the length of a step at a velocity depends on it
-    [s]
-
-    Must be at least 0.08. Can be set at start only.
+    Must be from 0.05 to 0.4. Can be set at start only.
     """
 
 
@@ -52,6 +36,12 @@ class StepParameters:
 class GaitPlannerParameters:
     """The parameters of the node gait_planner."""
 
+    walking_speed: float
+    """Fastest walk straight ahead; length and times of the steps follow from it, the same for all nodes
+    [m/s]
+
+    Must be from 0.1 to 0.5. Can be set at start only.
+    """
     model_file: str
     """A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its
     legs allow
@@ -104,14 +94,12 @@ def read_parameters(node: Node) -> GaitPlannerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return GaitPlannerParameters(
+        walking_speed=values["walking_speed"],
         model_file=values["model_file"],
         joint_map=values["joint_map"],
         step=StepParameters(
-            length_max=values["step.length_max"],
             sideways_max=values["step.sideways_max"],
             turn_max=values["step.turn_max"],
-            single_support_time=values["step.single_support_time"],
-            double_support_time=values["step.double_support_time"],
         ),
         stance_width=values["stance_width"],
     )
@@ -149,6 +137,17 @@ def _problem(name: str, value: Any) -> str:
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
         (
+            "walking_speed",
+            Parameter.Type.DOUBLE,
+            0.5,
+            ParameterDescriptor(
+                description="Fastest walk straight ahead; length and times of the steps follow from it, the same for all nodes [m/s]",
+                read_only=True,
+                additional_constraints="must be from 0.1 to 0.5",
+                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.5)],
+            ),
+        ),
+        (
             "model_file",
             Parameter.Type.STRING,
             "",
@@ -167,25 +166,14 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ),
         ),
         (
-            "step.length_max",
-            Parameter.Type.DOUBLE,
-            0.18,
-            ParameterDescriptor(
-                description="Longest forward step while the robot is steered by velocity [m]",
-                read_only=True,
-                additional_constraints="must be from 0.02 to 0.34",
-                floating_point_range=[FloatingPointRange(from_value=0.02, to_value=0.34)],
-            ),
-        ),
-        (
             "step.sideways_max",
             Parameter.Type.DOUBLE,
             0.06,
             ParameterDescriptor(
                 description="Widest sideways step while it is steered, beyond the stance width [m]",
                 read_only=True,
-                additional_constraints="must be from 0.0 to 0.15",
-                floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.15)],
+                additional_constraints="must be from 0.0 to 0.12",
+                floating_point_range=[FloatingPointRange(from_value=0.0, to_value=0.12)],
             ),
         ),
         (
@@ -195,29 +183,8 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ParameterDescriptor(
                 description="Largest turn per step while it is steered; the leg that follows turns half as far [rad]",
                 read_only=True,
-                additional_constraints="must be from 0.05 to 0.5",
-                floating_point_range=[FloatingPointRange(from_value=0.05, to_value=0.5)],
-            ),
-        ),
-        (
-            "step.single_support_time",
-            Parameter.Type.DOUBLE,
-            0.6,
-            ParameterDescriptor(
-                description="Time on one foot, in steps that do not come from a plan [s]",
-                read_only=True,
-                additional_constraints="must be from 0.35 to 3.0",
-                floating_point_range=[FloatingPointRange(from_value=0.35, to_value=3.0)],
-            ),
-        ),
-        (
-            "step.double_support_time",
-            Parameter.Type.DOUBLE,
-            0.2,
-            ParameterDescriptor(
-                description="Time on both feet that whole_body_controller takes; the length of a step at a velocity depends on it [s]",
-                read_only=True,
-                additional_constraints="must be at least 0.08",
+                additional_constraints="must be from 0.05 to 0.4",
+                floating_point_range=[FloatingPointRange(from_value=0.05, to_value=0.4)],
             ),
         ),
         (
@@ -235,20 +202,14 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
-    "step.length_max": (
-        (lambda value: 0.02 <= value <= 0.34, "must be from 0.02 to 0.34"),
+    "walking_speed": (
+        (lambda value: 0.1 <= value <= 0.5, "must be from 0.1 to 0.5"),
     ),
     "step.sideways_max": (
-        (lambda value: 0.0 <= value <= 0.15, "must be from 0.0 to 0.15"),
+        (lambda value: 0.0 <= value <= 0.12, "must be from 0.0 to 0.12"),
     ),
     "step.turn_max": (
-        (lambda value: 0.05 <= value <= 0.5, "must be from 0.05 to 0.5"),
-    ),
-    "step.single_support_time": (
-        (lambda value: 0.35 <= value <= 3.0, "must be from 0.35 to 3.0"),
-    ),
-    "step.double_support_time": (
-        (lambda value: value >= 0.08, "must be at least 0.08"),
+        (lambda value: 0.05 <= value <= 0.4, "must be from 0.05 to 0.4"),
     ),
     "stance_width": (
         (lambda value: 0.13 <= value <= 0.3, "must be from 0.13 to 0.3"),

@@ -6,6 +6,7 @@ from typing import Any
 
 from geometry_msgs.msg import Point, Twist, Vector3
 from humanoid import data
+from humanoid.control.pace import Pace
 from humanoid.planning.footsteps import StepLimits, fitted
 from humanoid.planning.gait import GaitPlanner as Planner
 from humanoid.robot.body import load_body
@@ -36,18 +37,16 @@ class GaitPlanner(GaitPlannerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        step = self.parameters.step
+        step, pace = self.parameters.step, Pace(self.parameters.walking_speed)
         limits = StepLimits(
-            forward=step.length_max,
             sideways=step.sideways_max,
             turn=step.turn_max,
             trailing_turn=step.turn_max / 2,
             width=self.parameters.stance_width,
-            step_time=step.single_support_time,
-        )
+        ).at_pace(pace)
         body = load_body(self.parameters.model_file, self.parameters.joint_map)
         self._foot = body.foot
-        self._planner = Planner(fitted(limits, body), step.double_support_time)
+        self._planner = Planner(fitted(limits, body), pace.double_support)
         self._upcoming = FootstepPlan()  # as last published
         self._asked = FootstepPlan()  # the last plan with steps
         self._walking = False  # whether the robot walks it

@@ -36,6 +36,12 @@ class ToleranceParameters:
 class NavigationActionServerParameters:
     """The parameters of the node navigation_action_server."""
 
+    walking_speed: float
+    """Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes
+    [m/s]
+
+    Must be from 0.1 to 0.5. Can be set at start only.
+    """
     model_file: str
     """A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its
     legs allow
@@ -109,6 +115,7 @@ def read_parameters(node: Node) -> NavigationActionServerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return NavigationActionServerParameters(
+        walking_speed=values["walking_speed"],
         model_file=values["model_file"],
         joint_map=values["joint_map"],
         second_goal=values["second_goal"],
@@ -154,6 +161,17 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "walking_speed",
+            Parameter.Type.DOUBLE,
+            0.5,
+            ParameterDescriptor(
+                description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
+                read_only=True,
+                additional_constraints="must be from 0.1 to 0.5",
+                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.5)],
+            ),
+        ),
         (
             "model_file",
             Parameter.Type.STRING,
@@ -245,6 +263,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
+    "walking_speed": (
+        (lambda value: 0.1 <= value <= 0.5, "must be from 0.1 to 0.5"),
+    ),
     "second_goal": (
         (lambda value: value in ["preempt", "reject"], 'must be one of "preempt", "reject"'),
     ),

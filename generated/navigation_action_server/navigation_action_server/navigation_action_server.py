@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from humanoid import data
+from humanoid.control.pace import Pace
 from humanoid.planning.following import blocked_step
 from humanoid.planning.footsteps import PlanResult, PlanStatus, StepLimits, fitted, shorter
 from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
@@ -38,7 +39,7 @@ class NavigationActionServer(NavigationActionServerBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         body = load_body(self.parameters.model_file, self.parameters.joint_map)
-        self._limits = fitted(StepLimits(), body)
+        self._limits = fitted(StepLimits().at_pace(Pace(self.parameters.walking_speed)), body)
         self._gait: data.GaitState | None = None
         self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)

@@ -779,6 +779,16 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "walking_speed",
+        Parameter.Type.DOUBLE,
+        0.5,
+        [0.5, 0.1, 0.3, 0.102, 0.49],
+        [0.098, 0.51],
+        description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
+        read_only=True,
+        range=(0.1, 0.5),
+    ),
+    ParameterCase(
         "model_file",
         Parameter.Type.STRING,
         "",

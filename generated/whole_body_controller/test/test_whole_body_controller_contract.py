@@ -623,6 +623,16 @@ PARAMETERS = [
         read_only=True,
     ),
     ParameterCase(
+        "walking_speed",
+        Parameter.Type.DOUBLE,
+        0.5,
+        [0.5, 0.1, 0.3, 0.102, 0.49],
+        [0.098, 0.51],
+        description="Fastest walk straight ahead; height of the body and time on both feet follow from it, the same for all nodes [m/s]",
+        read_only=True,
+        range=(0.1, 0.5),
+    ),
+    ParameterCase(
         "control.period",
         Parameter.Type.DOUBLE,
         0.004,
@@ -641,16 +651,6 @@ PARAMETERS = [
         description="Age at which joint states, IMU readings and odometry count as missing [s]",
         read_only=True,
         range=(0.01, 0.5),
-    ),
-    ParameterCase(
-        "balance.com_height",
-        Parameter.Type.DOUBLE,
-        0.7,
-        [0.7, 0.55, 0.74, 0.645, 0.561, 0.7252],
-        [0.539, 0.7548],
-        description="Height of the centre of mass above the soles [m]",
-        read_only=True,
-        range=(0.55, 0.74),
     ),
     ParameterCase(
         "balance.k_dcm",
@@ -680,16 +680,6 @@ PARAMETERS = [
         description="Height of the swinging foot [m]",
         read_only=True,
         range=(0.02, 0.1),
-    ),
-    ParameterCase(
-        "step.double_support_time",
-        Parameter.Type.DOUBLE,
-        0.2,
-        [0.2, 0.08, 1.0, 0.54, 0.0816, 0.98],
-        [0.0784, 1.02],
-        description="Time on both feet [s]",
-        read_only=True,
-        range=(0.08, 1.0),
     ),
 ]
 # fmt: on

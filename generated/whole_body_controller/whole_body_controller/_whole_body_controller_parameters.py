@@ -36,11 +36,6 @@ class ControlParameters:
 class BalanceParameters:
     """The parameters `balance.*`."""
 
-    com_height: float
-    """Height of the centre of mass above the soles [m]
-
-    Must be from 0.55 to 0.74. Can be set at start only.
-    """
     k_dcm: float
     """Feedback gain of the divergent component of motion
 
@@ -62,11 +57,6 @@ class StepParameters:
 
     Must be from 0.02 to 0.1. Can be set at start only.
     """
-    double_support_time: float
-    """Time on both feet [s]
-
-    Must be from 0.08 to 1.0. Can be set at start only.
-    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +72,12 @@ class WholeBodyControllerParameters:
     """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
 
     Can be set at start only.
+    """
+    walking_speed: float
+    """Fastest walk straight ahead; height of the body and time on both feet follow from it, the same for
+    all nodes [m/s]
+
+    Must be from 0.1 to 0.5. Can be set at start only.
     """
     control: ControlParameters
     """The parameters `control.*`."""
@@ -125,18 +121,17 @@ def read_parameters(node: Node) -> WholeBodyControllerParameters:
     return WholeBodyControllerParameters(
         model_file=values["model_file"],
         joint_map=values["joint_map"],
+        walking_speed=values["walking_speed"],
         control=ControlParameters(
             period=values["control.period"],
             input_timeout=values["control.input_timeout"],
         ),
         balance=BalanceParameters(
-            com_height=values["balance.com_height"],
             k_dcm=values["balance.k_dcm"],
             k_integral=values["balance.k_integral"],
         ),
         step=StepParameters(
             lift=values["step.lift"],
-            double_support_time=values["step.double_support_time"],
         ),
     )
 
@@ -191,6 +186,17 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ),
         ),
         (
+            "walking_speed",
+            Parameter.Type.DOUBLE,
+            0.5,
+            ParameterDescriptor(
+                description="Fastest walk straight ahead; height of the body and time on both feet follow from it, the same for all nodes [m/s]",
+                read_only=True,
+                additional_constraints="must be from 0.1 to 0.5",
+                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.5)],
+            ),
+        ),
+        (
             "control.period",
             Parameter.Type.DOUBLE,
             0.004,
@@ -210,17 +216,6 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
                 read_only=True,
                 additional_constraints="must be from 0.01 to 0.5",
                 floating_point_range=[FloatingPointRange(from_value=0.01, to_value=0.5)],
-            ),
-        ),
-        (
-            "balance.com_height",
-            Parameter.Type.DOUBLE,
-            0.7,
-            ParameterDescriptor(
-                description="Height of the centre of mass above the soles [m]",
-                read_only=True,
-                additional_constraints="must be from 0.55 to 0.74",
-                floating_point_range=[FloatingPointRange(from_value=0.55, to_value=0.74)],
             ),
         ),
         (
@@ -255,29 +250,18 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
                 floating_point_range=[FloatingPointRange(from_value=0.02, to_value=0.1)],
             ),
         ),
-        (
-            "step.double_support_time",
-            Parameter.Type.DOUBLE,
-            0.2,
-            ParameterDescriptor(
-                description="Time on both feet [s]",
-                read_only=True,
-                additional_constraints="must be from 0.08 to 1.0",
-                floating_point_range=[FloatingPointRange(from_value=0.08, to_value=1.0)],
-            ),
-        ),
     ]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
+    "walking_speed": (
+        (lambda value: 0.1 <= value <= 0.5, "must be from 0.1 to 0.5"),
+    ),
     "control.period": (
         (lambda value: 0.001 <= value <= 0.01, "must be from 0.001 to 0.01"),
     ),
     "control.input_timeout": (
         (lambda value: 0.01 <= value <= 0.5, "must be from 0.01 to 0.5"),
-    ),
-    "balance.com_height": (
-        (lambda value: 0.55 <= value <= 0.74, "must be from 0.55 to 0.74"),
     ),
     "balance.k_dcm": (
         (lambda value: 0.5 <= value <= 4.0, "must be from 0.5 to 4.0"),
@@ -287,9 +271,6 @@ _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     ),
     "step.lift": (
         (lambda value: 0.02 <= value <= 0.1, "must be from 0.02 to 0.1"),
-    ),
-    "step.double_support_time": (
-        (lambda value: 0.08 <= value <= 1.0, "must be from 0.08 to 1.0"),
     ),
 }
 _CHECKS: dict[str, tuple[Callable[[Any], object], ...]] = {

@@ -7,6 +7,7 @@ from typing import Any
 
 from humanoid import data
 from humanoid.control.controller import WholeBodyController as Controller
+from humanoid.control.pace import Pace
 from humanoid.control.plausible import imu_problem, joints_problem
 from humanoid.control.reference import GaitParameters
 from humanoid.robot.external import load_model
@@ -39,12 +40,10 @@ class WholeBodyController(WholeBodyControllerBase):
         super().__init__(**options)
         values = self.parameters
         parameters = GaitParameters(
-            com_height=values.balance.com_height,
             dcm_gain=values.balance.k_dcm,
             integral_gain=values.balance.k_integral,
             lift=values.step.lift,
-            double_support=values.step.double_support_time,
-        )
+        ).at_pace(Pace(values.walking_speed))
         self._period = round(values.control.period * data.SECOND)
         model = load_model(values.model_file, values.joint_map)
         timeout = round(values.control.input_timeout * data.SECOND)

@@ -68,7 +68,7 @@ def test_no_bad_set_point_reaches_a_joint(make_robot: MakeRobot) -> None:
     robot = make_robot(*WALKING)
     reports = reports_of(robot)
     robot.run(1.0)
-    goal = robot.send(walk(0.6))
+    goal = robot.send(walk(1.2))
     before = len(robot.setpoints)
     send, bad = robot.publisher(Float64MultiArray, COMMANDS), bad_commands(robot)
     while robot.gait.footstep_index < 3:
@@ -97,7 +97,7 @@ def test_no_bad_reading_plan_posture_velocity_or_push_does_harm(make_robot: Make
     robot = make_robot(*WALKING, humanoid_simulator={"patience": 0.02})
     reports = reports_of(robot)
     robot.run(1.0)
-    goal = robot.send(walk(0.6))
+    goal = robot.send(walk(1.2))
     names = list(JOINT_NAMES)
     plans = bad_plans()
     attacks: list[tuple[Callable[[Any], None], Callable[[], Any]]] = [

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..data import Leg
-from ..kinematics.dynamics import RobotState
-from ..robot.model import GRAVITY, SoleGeometry
+from ..robot.model import SoleGeometry
 from ..spatial import Array, from_frame, to_frame
 from .reference import GaitParameters, support_point
 
@@ -17,7 +16,6 @@ _INTEGRAL_LIMIT = 0.02  # m s
 # A push is not a lasting error. Larger errors [m] are not summed up: they would push back long after the
 # robot has caught itself. Meanwhile the sum fades within a second.
 _LASTING = 0.02
-_STIFFNESS, _DAMPING = 30.0, 6.0  # of the centre of mass's height, 1/s2 and 1/s
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,22 +78,3 @@ def distribute(
     rest = wanted - (share * left + (1 - share) * right)
     points = within(left + rest, 0), within(right + rest, 1)
     return Load(share * points[0] + (1 - share) * points[1], points, (share, 1 - share))
-
-
-def torques(state: RobotState, load: Load, omega: float, height: float) -> Array:
-    """Joint torques (joints,) that make the ground push as `load` says and carry the robot's own weight.
-
-    `omega` is the natural frequency [1/s], `height` the wanted height of the centre of mass [m].
-    """
-    com, velocity, mass = state.com, state.com_velocity, state.model.mass
-    pull = mass * omega**2 * (com[:2] - load.zmp)
-    lift = mass * (GRAVITY + _STIFFNESS * (height - com[2]) - _DAMPING * velocity[2])
-    force = np.array([pull[0], pull[1], lift])
-    torque = state.bias.copy()
-    for side, share in enumerate(load.shares):
-        if share > 0:
-            arm = load.points[side] - state.sole(side)[0][:2]
-            x, y, z = share * force
-            moment = np.array([arm[1] * z, -arm[0] * z, arm[0] * y - arm[1] * x])
-            torque += state.contact_torque(side, share * force, moment)
-    return torque

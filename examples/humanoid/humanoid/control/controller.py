@@ -29,7 +29,7 @@ from ..kinematics.legs import Legs
 from ..robot.model import PERIOD, HumanoidModel
 from ..robot.table import LEGS, UPPER_BODY
 from ..spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
-from . import balance
+from . import balance, effort
 from .fitting import fitted
 from .inputs import LATE, LEASE, Inputs, Leases
 from .posture import level, relaxed, standing
@@ -245,6 +245,9 @@ class WholeBodyController:
             self.stepping.stand([state.planar_sole(side) for side in (0, 1)])
             self.stepping.com = state.com[:2]
             self._joints = joints.position.copy()
+            # The robot may stand higher or lower than it will walk: it goes there slowly.
+            floor = min(state.sole(side)[0][2] for side in (0, 1))
+            self._squat = self.parameters.com_height - float(state.com[2] - floor)
         lowest = min(state.sole(side)[0][2] for side in (0, 1))
         self._fallen = self._fallen or odometry.position[2] - lowest < self._fallen_height
 
@@ -261,16 +264,15 @@ class WholeBodyController:
         self.error = dcm - (stepping.com + stepping.velocity / self._omega)
         stepping.keep_near(state.com[:2])
         stepping.adjust(self.error)
-        load = balance.distribute(
-            self._feedback.zmp(sample.zmp, self.error),
-            soles,
-            sample.swing.leg.other.side if sample.swing else None,
-            self.model.sole,
-            parameters,
-        )
-        self._zmp = load.zmp
+        stance = sample.swing.leg.other.side if sample.swing else None
         height = parameters.com_height - self._squat
-        torque = balance.torques(state, load, self._omega, height)
+        zmp = self._feedback.zmp(sample.zmp, self.error)
+        load = balance.distribute(zmp, soles, stance, self.model.sole, parameters)
+        force = effort.wanted_force(state, load.zmp, self._omega, height)
+        motion = effort.Motion(state, force, stepping.accelerations())
+        load = balance.distribute(motion.pressure_point(force), soles, stance, self.model.sole, parameters)
+        self._zmp = load.zmp
+        torque = motion.torques(force, load)
         way = _JOINT_SPEED * self._elapsed
         joints = np.clip(self._inverse_kinematics(sample, height), self._joints - way, self._joints + way)
         velocity = (joints - self._joints) / self._elapsed

@@ -24,6 +24,7 @@ def fitted(parameters: GaitParameters, model: HumanoidModel) -> GaitParameters:
     return replace(
         parameters,
         com_height=model.straight_height - scale * (_ours() - parameters.com_height),
+        reach=parameters.reach * scale,
         stance_width=model.body.stance_width * parameters.stance_width / OURS.stance_width,
         lift=parameters.lift * scale,
         zmp_ahead=parameters.zmp_ahead - table.FOOT_CENTRE + sole.centre,

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..data import STEP_TIME, Footstep, Leg
 from ..robot.table import STANCE_WIDTH
 from ..spatial import Array, from_frame
+from .pace import Pace
 
 PREVIEW = 4  # steps that the reference looks ahead: later ones weigh exp(-w t) < 1e-5
 
@@ -25,12 +26,14 @@ PREVIEW = 4  # steps that the reference looks ahead: later ones weigh exp(-w t) 
 class GaitParameters:
     """Parameters of a walk. Times in seconds, lengths in metres; gains have no unit unless one is named.
 
-    Lengths are those of our robot; `fitting.fitted` makes them those of another.
+    The first three follow from the speed: see `at_pace`. Lengths are those of our robot; `fitting.fitted`
+    makes them those of another.
     """
 
-    com_height: float = 0.70
+    com_height: float = Pace().com_height
+    double_support: float = Pace().double_support
+    reach: float = Pace().reach  # between the soles, of a step that can be taken
     stance_width: float = STANCE_WIDTH
-    double_support: float = 0.20
     first_double_support: float = 1.2  # from standing
     settle: float = 0.5  # from the last step until the robot counts as standing
     lift: float = 0.05
@@ -41,6 +44,10 @@ class GaitParameters:
     tilt_gain: float = 0.3
     edge_along: float = 0.010  # of a sole; the ZMP does not use it
     edge_across: float = 0.006
+
+    def at_pace(self, pace: Pace) -> GaitParameters:
+        """The same parameters for a walk at another speed."""
+        return replace(self, com_height=pace.com_height, double_support=pace.double_support, reach=pace.reach)
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,12 +13,13 @@ from ..robot.model import SoleGeometry
 from ..spatial import Array, from_frame, to_frame, wrap
 from . import swing
 from .balance import limits
+from .pace import SHORTEST_TIME
 from .reference import GaitParameters, Reference, Sample, middle, swinging_reference, walking_reference
 
 _ADJUSTABLE = 0.9  # share of a swing until which its landing may still move
 _ONLY_OUTWARDS = 0.5  # share of a swing after which its landing no longer comes nearer to the other foot
 _MOVED = 0.01  # metres by which a landing must have moved before the later steps move with it
-_LONGEST, _NARROWEST = 0.60, 0.11  # limits of a step: between the soles, and sideways; metres
+_NARROWEST = 0.11  # metres sideways between the soles
 # A swing is hurried at these errors of the DCM [m]: outwards, inwards, along; but not within this time [s] of
 # its end.
 _FALLING_OUT, _FALLING_IN, _FALLING_ALONG, _SOON = 0.035, 0.06, 0.10, 0.25
@@ -191,6 +192,16 @@ class Stepping:
             )
         return poses
 
+    def accelerations(self) -> list[Array]:
+        """Accelerations (6,) of both soles at this tick, linear then angular."""
+        found = [np.zeros(6), np.zeros(6)]
+        if (moving := self.sample.swing) is not None:
+            side, sample = moving.leg.side, self.sample
+            found[side] = swing.acceleration(
+                self.feet[side], self.landing, sample.phase, sample.time_left, self._parameters.lift
+            )
+        return found
+
     def touchdown(self, measured: Sequence[Array]) -> None:
         """End the swing: continue from where the soles (planar poses) really are."""
         done = self.steps.pop(0)
@@ -254,17 +265,17 @@ class Stepping:
         feet = list(self.feet)
         last: Leg | None = None
         for step in steps:
-            if (
-                not all(map(math.isfinite, (step.x, step.y, step.yaw, step.step_time)))
-                or step.step_time < 0.2
-            ):
+            if not all(map(math.isfinite, (step.x, step.y, step.yaw, step.step_time))):
                 return f"step {step.index} holds a number that is not a position, angle or time"
+            if step.step_time < SHORTEST_TIME:
+                return f"step {step.index} takes {step.step_time:.2f} s; {SHORTEST_TIME:g} s at least"
             if step.leg is last:
                 return f"step {step.index} moves the {step.leg.name.lower()} leg twice in a row"
             x, y = to_frame(feet[step.leg.other.side], step.pose[:2])
-            if math.hypot(x, y) > _LONGEST:
+            if (length := math.hypot(x, y)) > (reach := self._parameters.reach):
                 return (
-                    f"step {step.index} is {math.hypot(x, y):.2f} m from the other foot; {_LONGEST} m at most"
+                    f"step {step.index} is {length:.2f} m from the other foot; {reach:.2f} m at most"
+                    " at this walking_speed"
                 )
             if step.leg.sign * y < _NARROWEST:
                 return f"step {step.index} comes too close to the other foot"

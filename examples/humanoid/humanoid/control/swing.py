@@ -8,7 +8,7 @@ import numpy as np
 
 from ..spatial import Array, from_frame, to_frame
 
-_FORWARD = (-0.30, 0.36)  # of the landing, relative to the stance foot, metres
+_FORWARD = (-0.30, 0.45)  # of the landing, relative to the stance foot, metres
 _OUTWARD = (0.13, 0.42)
 FLOOR = 0.3
 _SPEED = 1.5  # speed at which the landing moves, m/s
@@ -27,6 +27,19 @@ def foot_pose(start: Array, landing: Array, phase: float, lift: float) -> tuple[
     """
     share = travelled(phase)
     return start + (landing - start) * share, lift * 64 * (phase * (1 - phase)) ** 3
+
+
+def acceleration(start: Array, landing: Array, phase: float, left: float, lift: float) -> Array:
+    """The acceleration (6,) of the sole on the way of `foot_pose`, linear then angular.
+
+    `left` is the time until it lands [s].
+    """
+    rate = (1.0 - phase) / max(left, 0.05)
+    share = 60 * phase - 180 * phase**2 + 120 * phase**3
+    both = phase * (1 - phase)
+    height = 64 * (6 * both * (1 - 2 * phase) ** 2 - 6 * both**2)
+    x, y, yaw = (landing - start) * share
+    return rate**2 * np.array([x, y, lift * height, 0.0, 0.0, yaw])
 
 
 def adjusted_landing(

@@ -41,6 +41,7 @@ class RobotState:
         mujoco.mj_comVel(self.model.mj, self._data)
         mujoco.mj_subtreeVel(self.model.mj, self._data)
         mujoco.mj_rne(self.model.mj, self._data, 0, self._data.qfrc_bias)
+        mujoco.mj_crb(self.model.mj, self._data)
 
     @property
     def com(self) -> Array:
@@ -56,6 +57,18 @@ class RobotState:
     def bias(self) -> Array:
         """Joint torques (joints,) that counter gravity and motion, as if nothing touched the robot."""
         return np.asarray(self._data.qfrc_bias[self.model.dof])
+
+    @property
+    def generalized_bias(self) -> Array:
+        """The same for all degrees of freedom of the model; base_link's six come first."""
+        return np.array(self._data.qfrc_bias)
+
+    @property
+    def mass_matrix(self) -> Array:
+        """Force per acceleration, for all degrees of freedom of the model."""
+        matrix = np.zeros((self.model.mj.nv, self.model.mj.nv))
+        mujoco.mj_fullM(self.model.mj, self._data, matrix)
+        return matrix
 
     @property
     def base(self) -> tuple[Array, Array]:
@@ -77,6 +90,16 @@ class RobotState:
         """The velocity (3,) of a sole."""
         velocities: Array = self._data.qvel
         return self._jacobian(side)[0] @ velocities
+
+    def sole_jacobian(self, side: int) -> tuple[Array, Array]:
+        """The Jacobian (6, nv) of a sole, linear then angular, and its acceleration (6,) if no joint's is."""
+        linear, angular = self._jacobian(side)
+        drift, turning = np.zeros_like(linear), np.zeros_like(angular)
+        site = self._soles[side]
+        body = self.model.mj.site_bodyid[site]
+        mujoco.mj_jacDot(self.model.mj, self._data, drift, turning, self._data.site_xpos[site], body)
+        velocities: Array = self._data.qvel
+        return np.vstack((linear, angular)), np.vstack((drift, turning)) @ velocities
 
     def contact_torque(self, side: int, force: Array, torque: Array) -> Array:
         """Joint torques (joints,) that make the ground answer with a force and torque (3,) at the sole."""

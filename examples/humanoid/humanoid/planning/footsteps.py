@@ -13,7 +13,8 @@ from enum import IntEnum
 
 import numpy as np
 
-from ..data import STEP_TIME, Footstep, FootstepPlan, Leg, Stance
+from ..control.pace import SHORTEST_TIME, Pace
+from ..data import Footstep, FootstepPlan, Leg, Stance
 from ..robot.body import OURS, Body
 from ..robot.ground import Ground
 from ..robot.table import STANCE_WIDTH
@@ -36,15 +37,19 @@ class PlanStatus(IntEnum):
 class StepLimits:
     """Limits of a step. Lengths in metres, angles in radians, times in seconds."""
 
-    forward: float = 0.18
+    forward: float = Pace().step_length
     backward: float = 0.10
     sideways: float = 0.06  # by the leg on that side; the other one follows
     turn: float = 0.30  # by the leg on that side
     trailing_turn: float = 0.15
     near: float = 0.45  # within this distance the robot turns to the goal's yaw, no longer towards the goal
     width: float = STANCE_WIDTH
-    step_time: float = STEP_TIME
+    step_time: float = Pace().step_time
     most: int = 512  # steps that a plan can hold
+
+    def at_pace(self, pace: Pace) -> StepLimits:
+        """The same limits for a walk at another speed."""
+        return replace(self, forward=pace.step_length, step_time=pace.step_time)
 
 
 def shorter(limits: StepLimits, length: float) -> StepLimits:
@@ -90,14 +95,18 @@ def advance(base: Array, leg: Leg, motion: Sequence[float] | Array, limits: Step
     """The body's planar pose after a step of this leg: moved by (forward, left, turn), within its limits.
 
     A leg cannot step across the other one. Only the leg on the side of the motion moves sideways or makes a
-    full turn.
+    full turn. A step that turns goes half as far aside, and one that does either, half as far ahead.
     """
     forward, left, turn = motion
-    forward = min(max(forward, -limits.backward), limits.forward)
-    left = min(max(left, -limits.sideways), limits.sideways) if left * leg.sign > 0 else 0.0
     most = limits.turn if turn * leg.sign > 0 else limits.trailing_turn
+    turn = min(max(turn, -most), most)
+    room = 1.0 - 0.5 * abs(turn) / limits.turn
+    aside = room * limits.sideways
+    left = min(max(left, -aside), aside) if left * leg.sign > 0 else 0.0
+    room *= 1.0 - 0.5 * abs(left) / aside if aside > 0 else 1.0
+    forward = min(max(forward, -room * limits.backward), room * limits.forward)
     x, y = from_frame(base, np.array([forward, left]))
-    return np.array([x, y, base[2] + min(max(turn, -most), most)])
+    return np.array([x, y, base[2] + turn])
 
 
 def plan_footsteps(
@@ -181,6 +190,6 @@ def _invalid(start: Stance, goal: tuple[float, float, float], limits: StepLimits
     apart = math.hypot(*(start.feet[0] - start.feet[1])[:2])
     if not 0.08 < apart < 0.7:
         return f"the soles of the stance are {apart:.2f} m apart; a stance has 0.08 to 0.7 m"
-    if not (limits.forward > 0 and 0.3 <= limits.step_time <= 3.0):
-        return "a step needs a length above 0 and 0.3 to 3 s"
+    if not (limits.forward > 0 and SHORTEST_TIME <= limits.step_time <= 3.0):
+        return f"a step needs a length above 0 and {SHORTEST_TIME:g} to 3 s"
     return ""

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..control.pace import Pace
 from ..data import Footstep, FootstepPlan, GaitState, Leg, Mode, Stance, Support
 from ..spatial import Array, from_frame, wrap
 from .footsteps import StepLimits, advance, beside, footstep
@@ -23,7 +24,9 @@ _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
 class GaitPlanner:
     """Turns requests for the gait into the plan that the controller follows."""
 
-    def __init__(self, limits: StepLimits | None = None, double_support: float = 0.2) -> None:
+    def __init__(
+        self, limits: StepLimits | None = None, double_support: float = Pace().double_support
+    ) -> None:
         self._limits = limits or StepLimits()
         self._step_period = self._limits.step_time + double_support
         self._plan = FootstepPlan(0, (), (0.0, 0.0, 0.0))

@@ -33,13 +33,15 @@ class Adapter:
     spec: mujoco.MjSpec
     names: JointMap
     joints: dict[str, str] = field(default_factory=dict)  # ours, or its own: theirs; in our order
+    torso: str = ""
     sole: SoleGeometry = field(default_factory=lambda: SoleGeometry(0.0, 0.0, 0.0))
     sites: list[Any] = field(default_factory=list)  # of theirs, with names
 
     def adapt(self) -> None:
         """Add what is missing. Raises ModelError, or ValueError if MuJoCo does not compile the model."""
         base = self._body(self.names.base, "base")
-        self._body(self.names.torso, "torso")
+        self.torso = self.names.torso or self._usual_torso()
+        self._body(self.torso, "torso")
         if not any(joint.type == mujoco.mjtJoint.mjJNT_FREE for joint in base.joints):
             raise ModelError(f"{self.path}: body '{base.name}' has no free joint, so the robot cannot move")
         for ours in KNOWN_JOINTS:
@@ -63,6 +65,10 @@ class Adapter:
         if body is None:
             raise ModelError(f"{self.path}: no body '{name}' for '{ours}'{_near(name, self.spec.bodies)}")
         return body
+
+    def _usual_torso(self) -> str:
+        """The body with our name for it; a robot in one piece above its legs has none."""
+        return "torso" if self.spec.body("torso") is not None else self.names.base
 
     def _hinge(self, ours: str, theirs: str) -> None:
         """Check the joint that corresponds to one of ours."""
@@ -106,7 +112,7 @@ class Adapter:
 
     def _frames(self, base: Any) -> None:
         """Add the other frames; those of a limb that the robot lacks are left out, but for the camera's."""
-        bodies = {"base_link": base, "torso": self._body(self.names.torso, "torso")}
+        bodies = {"base_link": base, "torso": self._body(self.torso, "torso")}
         for link, ours in _JOINT.items():
             if ours in self.joints:
                 bodies[link] = self.spec.joint(self.joints[ours]).parent

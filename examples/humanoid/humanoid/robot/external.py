@@ -3,7 +3,7 @@
 The map is YAML:
 
     base: pelvis                      # the body that floats
-    torso: trunk                      # the body that arms and head hang on
+    torso: trunk                      # the body that arms and head hang on; base if there is none
     sole: {centre: 0.02, length: 0.22, width: 0.11}   # of the sole's rectangle in l_sole; metres
     joints:                           # ours: theirs; a joint with the same name can be left out
       l_knee: left_knee_joint
@@ -55,7 +55,7 @@ def load_external(path: Path, joint_map: Path | None = None, solids: Sequence[So
     except ValueError as error:
         raise ModelError(f"{path}: {_sentence(error)}") from error
     check_parts(path, mj, names.base, adapter.joints)
-    model = describe(mj, Names(adapter.joints, names.base, names.torso), adapter.sole)
+    model = describe(mj, Names(adapter.joints, names.base, adapter.torso), adapter.sole)
     check_walkable(path, model, adapter.joints)
     return model
 

@@ -45,7 +45,7 @@ class JointMap:
     """The names of joints and frames; those that are left out have our names."""
 
     base: str = "base_link"
-    torso: str = "torso"
+    torso: str = ""  # torso, or the base if there is no such body
     sole: SoleGeometry | None = None
     joints: Mapping[str, str] = field(default_factory=dict)
     frames: Mapping[str, str | Frame] = field(default_factory=dict)
@@ -85,7 +85,7 @@ class _Reader:
         frames = self._mapping(entries.get("frames", {}), "frames", _FRAMES)
         return JointMap(
             self._name(entries.get("base", "base_link"), "base"),
-            self._name(entries.get("torso", "torso"), "torso"),
+            self._name(entries["torso"], "torso") if "torso" in entries else "",
             self._sole(entries["sole"]) if "sole" in entries else None,
             names,
             {ours: self._frame(place, f"frames.{ours}") for ours, place in frames.items()},

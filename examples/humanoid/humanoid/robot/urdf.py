@@ -77,20 +77,16 @@ def _coloured(link: ElementTree.Element, shape: table.Shape) -> ElementTree.Elem
 
 
 def looks(shape: table.Shape) -> list[table.Shape]:
-    """The shapes to show for one: a capsule with its round ends, a row of spheres for an ellipsoid."""
-    axis = int(np.argmax(shape.size))
-    if shape.kind == "capsule":
-        radius, away, axis = shape.size[0], shape.size[1], 2
-        sides: tuple[float, ...] = (-1, 1)
-    elif shape.kind == "ellipsoid":
-        radius = (sum(shape.size) - shape.size[axis]) / 2
-        away = shape.size[axis] - radius
-        sides = (-1, -0.5, 0, 0.5, 1)
-    else:
+    """The shapes to show for one: a capsule with its round ends, which a high ellipsoid looks like, too."""
+    x, y, z = shape.size
+    if shape.kind == "ellipsoid" and z > (radius := (x + y) / 2):
+        shape = replace(shape, kind="capsule", size=(radius, z - radius, 0.0))
+    if shape.kind != "capsule":
         return [shape]
-    places = ([p + side * away * (i == axis) for i, p in enumerate(shape.position)] for side in sides)
-    ends = [replace(shape, kind="sphere", size=(radius, 0.0, 0.0), position=(x, y, z)) for x, y, z in places]
-    return ends if shape.kind == "ellipsoid" else [shape, *ends]
+    radius, half, _ = shape.size
+    x, y, z = shape.position
+    ball = replace(shape, kind="sphere", size=(radius, 0.0, 0.0))
+    return [shape, *(replace(ball, position=(x, y, z + end)) for end in (-half, half))]
 
 
 def geometry(parent: ElementTree.Element, shape: table.Shape) -> None:

@@ -29,7 +29,7 @@ _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _TASKS = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _ASTRAY = 0.08  # m from its goal at which a walk has failed, whatever the robot believes
-_LYING = 0.45  # m of base_link above the floor
+_LYING = 0.62  # share of the greatest height of base_link below which the robot lies
 _LOOK = 0.1  # s of simulated time between checks that everything is over
 _LAST = 1.0  # s of simulated time from then until the end
 
@@ -79,6 +79,7 @@ class Director(Node):
         self._truth: tuple[Array, Array] | None = None
         self._middle: Array | None = None  # between the soles, at the last landing
         self._base: Array | None = None
+        self._height = 0.0  # the greatest of base_link [m]
         self._index: int | None = None
         self._end = math.inf
         self._digest = hashlib.sha256()
@@ -223,7 +224,7 @@ class Director(Node):
         return None if self._truth is None else (self._truth[0][:2] + self._truth[1][:2]) / 2
 
     def _lies(self) -> bool:
-        return self._base is not None and bool(self._base[2] < _LYING)
+        return self._base is not None and bool(self._base[2] < _LYING * self._height)
 
     def _on_plan(self, message: FootstepPlan) -> None:
         self._planned.update((step.index, step) for step in messages.read_footstep_plan(message).steps)
@@ -237,3 +238,4 @@ class Director(Node):
         if messages.nanoseconds(message.header.stamp) / SECOND <= self._end:
             self._digest.update(serialize_message(message))
         self._base = messages.numbers(message.pose.pose.position)
+        self._height = max(self._height, float(self._base[2]))

@@ -7,16 +7,19 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..control.pace import Pace
 from ..control.reference import straight_steps
 from ..data import FootstepPlan
 from ..planning.navigation import Navigation, Outcome, WalkResult
 from ..robot.model import HumanoidModel
+from ..robot.table import STANCE_WIDTH
 from ..seeds import generator
 from ..simulation.sim import Noise
 from .harness import Lockstep
 
-STRAIGHT = FootstepPlan(1, straight_steps(12, 0.18, 0.18), (1.98, 0.0, 0.0))
-"""Twelve steps of 0.18 m straight ahead."""
+_LENGTH = Pace().step_length
+STRAIGHT = FootstepPlan(1, straight_steps(12, _LENGTH, STANCE_WIDTH), (11 * _LENGTH, 0.0, 0.0))
+"""Twelve steps straight ahead at the usual speed."""
 
 _PUSH_TIME = 0.1  # seconds
 BETWEEN_PUSHES = 2.0  # seconds: two or three steps

@@ -2,7 +2,7 @@
 const SVG = "http://www.w3.org/2000/svg";
 const ROLES = {
   "World": ["humanoid_simulator", "audience", "referee", "director"],
-  "Senses": ["camera_driver", "joint_state_publisher", "imu_fusion", "face_detection", "obstacle_detection", "mapping", "speech_recognition", "teleop", "battery_monitor"],
+  "Senses": ["camera_driver", "joint_state_publisher", "imu_fusion", "face_detection", "obstacle_mapper", "speech_recognition", "teleop", "battery_monitor"],
   "Decisions": ["high_level_task_manager", "navigation_action_server", "dance_action_server", "emergency_stop", "inverse_kinematics_server"],
   "Plans": ["motion_planner", "footstep_planner", "footstep_generation_server", "gait_planner"],
   "Motion": ["whole_body_controller", "joint_controller"],

@@ -31,6 +31,7 @@ export async function command(what, quiet = false) {
       headers: { "Content-Type": "application/json", "X-Humanoid": "1" },
       body: JSON.stringify(what),
     });
+    document.getElementById("hint").hidden = true; // who commands has read it
     const { accepted, text } = answer.ok ? await answer.json() : { accepted: false, text: answer.statusText };
     if (!quiet || !accepted) say(accepted ? text : `Refused: ${text}`, !accepted);
     return accepted;

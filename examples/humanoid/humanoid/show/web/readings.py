@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from action_msgs.msg import GoalStatus, GoalStatusArray
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import (
@@ -35,7 +36,8 @@ _STATES = {
 }
 _SHAPES = {1: "box", 2: "sphere", 3: "cylinder"}  # visualization_msgs/msg/Marker.type
 _DELETE = (2, 3)  # its actions
-_MOST_CELLS = 40_000
+_MOST_CELLS = 1_000_000
+_OCCUPIED = 65  # percent, from which our planner sees an obstacle
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,12 +147,13 @@ def _map(message: OccupancyGrid) -> dict[str, Any] | None:
     info = message.info
     if not 0 < info.width * info.height <= _MOST_CELLS:
         return None
+    occupied = np.flatnonzero(np.asarray(message.data) >= _OCCUPIED)
     return {
         "width": info.width,
         "height": info.height,
         "cell": round(info.resolution, 4),
         "origin": rounded(info.origin.position.x, info.origin.position.y),
-        "cells": list(message.data),
+        "occupied": occupied.tolist(),
     }
 
 

@@ -10,7 +10,6 @@ const FLOOR = 80; // a square about the robot
 const TILE = 0.5; // so that walking can be seen
 const TRAIL = 600; // points
 const TRAIL_STEP = 0.02;
-const OCCUPIED = 50; // percent
 const LEAD = 0.7;
 const SLOW = 70; // ms between frames above which the picture is made simpler
 const FRAMES = 40; // that are looked at for this
@@ -252,12 +251,10 @@ export class Scene {
     this.map.visible = Boolean(map);
     this.changed = true;
     if (!map) return;
-    const { width, height, cell, origin, cells } = map;
+    const { width, height, cell, origin, occupied } = map;
     const pixels = new Uint8Array(4 * width * height);
     const color = new THREE.Color(css("danger"));
-    cells.forEach((value, index) => {
-      if (value >= OCCUPIED) pixels.set([255 * color.r, 255 * color.g, 255 * color.b, 255], 4 * index);
-    });
+    for (const index of occupied) pixels.set([255 * color.r, 255 * color.g, 255 * color.b, 255], 4 * index);
     this.map.material.map?.dispose();
     this.map.material.map = new THREE.DataTexture(pixels, width, height);
     this.map.material.map.needsUpdate = this.map.material.needsUpdate = true;

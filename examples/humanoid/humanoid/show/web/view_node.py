@@ -32,6 +32,7 @@ from ...planning.choreography import DANCES
 from ..audience import Audience
 from ..scenarios import names
 from .commands import Commands
+from .heard import Heard, Rates
 from .readings import READINGS, Reading
 from .server import LOOPBACK, Document, PageServer
 
@@ -65,12 +66,12 @@ class WebView(Node):
         scenario: str = "",
     ) -> None:
         super().__init__("web_view")
-        self._heard: dict[str, _Topic] = {}
+        self._heard: dict[str, Heard] = {}
         self._lines: deque[list[Any]] = deque(maxlen=_LINES)
         self._line = 0
         self._warned: dict[str, str] = {}
         self._simulated = 0.0
-        self._rated = (0.0, 0.0)  # real and simulated time of the last check of rates
+        self._rates = Rates()
         self._seen = time.monotonic()  # when somebody last watched
         self._looked = 0.0
         self._picture = b""
@@ -124,18 +125,18 @@ class WebView(Node):
         for topic, reading in READINGS.items():
             qos = _LATCHED if reading.latched else _EVERY if reading.every else _LATEST
             self._subscribe(topic, reading.kind, qos, reading)
-        self._rated = (time.monotonic(), self._simulated)
 
     def _listen_no_more(self) -> None:
         for topic in self._heard.values():
             self.destroy_subscription(topic.subscription)
         self._heard.clear()
+        self._rates = Rates()
         self._set_camera(False)
 
     def _subscribe(
         self, topic: str, kind: type[Any], qos: QoSProfile, reading: Reading | None = None
     ) -> None:
-        heard = self._heard[topic] = _Topic(reading)
+        heard = self._heard[topic] = Heard(reading)
         heard.subscription = self.create_subscription(kind, topic, heard.hear, qos, raw=True)
 
     def _show(self) -> None:
@@ -181,17 +182,17 @@ class WebView(Node):
                 continue
             if topic not in self._heard and (kind := _message_class(types[0])) is not None:
                 self._subscribe(topic, kind, _LATEST)
-        (before, then), self._rated = self._rated, (now, self._simulated)
-        real, simulated = now - before, self._simulated - then
-        if real > 0 and simulated >= 0:
-            self.page.show("factor", round(simulated / real, 2))
+        counts = {name: topic.messages for name, topic in self._heard.items()}
+        self._rates.count(now, self._simulated, counts)
+        self.page.show("factor", round(self._rates.factor, 2))
         graph = of_running(self)
         self.page.show("graph", _drawing(graph))
         kinds = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
-        counts = {name: topic.count() for name, topic in self._heard.items()}
-        if simulated > 0:  # otherwise time stands still, or has gone back
-            rates = {name: round(count / simulated, 1) for name, count in counts.items()}
-            self.page.show("topics", [[n, kinds[n], rates[n]] for n in sorted(kinds) if n in rates])
+        if rates := self._rates.per_second():
+            self.page.show(
+                "topics",
+                [[name, kinds[name], round(rates[name], 1)] for name in sorted(kinds) if name in rates],
+            )
 
     def _set_camera(self, on: bool) -> tuple[bool, str]:
         """Show the pictures of the head camera, which take time to draw, or no more."""
@@ -225,33 +226,6 @@ class WebView(Node):
 
     def _latest_picture(self) -> Document:
         return ".jpg", self._picture
-
-
-class _Topic:
-    """What was heard of a topic."""
-
-    def __init__(self, reading: Reading | None) -> None:
-        self.reading = reading
-        self.subscription: Any = None
-        self._messages = 0
-        self._new: deque[bytes] = deque(maxlen=None if reading and reading.every else 1)
-
-    def hear(self, data: bytes) -> None:
-        """Count a message; only those that are shown will be read."""
-        self._messages += 1
-        if self.reading is not None:
-            self._new.append(data)
-
-    def take(self) -> list[bytes]:
-        """The messages since the last call: all, or only the newest."""
-        new = list(self._new)
-        self._new.clear()
-        return new
-
-    def count(self) -> int:
-        """The number of messages since the last call."""
-        counted, self._messages = self._messages, 0
-        return counted
 
 
 def _answer(answered: Future[tuple[bool, str]], accepted: bool, text: str) -> None:
