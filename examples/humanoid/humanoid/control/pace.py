@@ -34,6 +34,11 @@ class Pace:
         if not SLOWEST <= self.speed <= FASTEST:
             raise ValueError(f"the robot walks at {SLOWEST:g} to {FASTEST:g} m/s, not at {self.speed:g}")
 
+    @classmethod
+    def no_lower_than(cls, height: float) -> Pace:
+        """The fastest walk at which the centre of mass, with legs as long as ours, is at this height [m]."""
+        return cls(float(np.interp(-height, [-h for h in _HEIGHTS], _SPEEDS)))
+
     @property
     def step_time(self) -> float:
         """Time from lift-off to touchdown [s]."""
