@@ -108,7 +108,7 @@ def test_steps_along_random_routes_keep_away_and_are_steps_that_legs_can_take() 
 def test_a_step_towards_an_obstacle_is_seen_and_one_away_from_it_is_not() -> None:
     plan = plan_footsteps(HERE, (1.0, 0.0, 0.0), first_leg=Leg.RIGHT).plan
     assert blocked_step(plan.steps, np.array([[0.9, 0.0]]), HERE.centre, LIMITS).startswith(
-        "step 4 of 7 is 0."
+        "step 2 of 4 is 0."
     )
     assert blocked_step(plan.steps, np.array([[-0.2, 0.0]]), HERE.centre, LIMITS) == ""
     assert blocked_step(plan.steps, NOTHING, HERE.centre, LIMITS) == ""

@@ -24,7 +24,7 @@ class FootstepPlannerParameters:
     """Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes
     [m/s]
 
-    Must be from 0.1 to 0.5. Can be set at start only.
+    Must be from 0.1 to 0.6. Can be set at start only.
     """
     model_file: str
     """A humanoid of your own as MJCF, the same for all nodes; empty for ours
@@ -132,8 +132,8 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ParameterDescriptor(
                 description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
                 read_only=True,
-                additional_constraints="must be from 0.1 to 0.5",
-                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.5)],
+                additional_constraints="must be from 0.1 to 0.6",
+                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.6)],
             ),
         ),
         (
@@ -189,7 +189,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "walking_speed": (
-        (lambda value: 0.1 <= value <= 0.5, "must be from 0.1 to 0.5"),
+        (lambda value: 0.1 <= value <= 0.6, "must be from 0.1 to 0.6"),
     ),
     "horizon": (
         (lambda value: 2 <= value <= 32, "must be from 2 to 32"),

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..control.pace import SHORTEST_TIME, Pace
 from ..data import Footstep, FootstepPlan, Leg, Stance
-from ..robot.body import OURS, Body
+from ..robot.body import OURS, STRAIGHT_HEIGHT, Body
 from ..robot.ground import Ground
 from ..robot.table import STANCE_WIDTH
 from ..spatial import Array, from_frame, to_frame, wrap
@@ -58,11 +58,17 @@ def shorter(limits: StepLimits, length: float) -> StepLimits:
 
 
 def fitted(limits: StepLimits, body: Body) -> StepLimits:
-    """The limits that are as large for the legs of another body as these are for ours."""
+    """The limits that are as large for the legs of another body as these are for ours.
+
+    Legs that cannot bend as deep as ours take shorter steps.
+    """
+    if body is OURS:
+        return limits
     scale = body.scale
+    fastest = Pace.no_lower_than(STRAIGHT_HEIGHT - body.crouch / scale)
     return replace(
         limits,
-        forward=limits.forward * scale,
+        forward=min(limits.forward, fastest.step_length) * scale,
         backward=limits.backward * scale,
         sideways=limits.sideways * scale,
         near=limits.near * scale,

@@ -25,6 +25,7 @@ class Body:
     leg_length: float  # from the hip to the sole of a straight leg, metres
     stance_width: float  # between the soles of a robot that stands, metres
     foot: tuple[float, float]  # length and width of a sole, metres
+    crouch: float  # by which its centre of mass may be lower than on straight legs, metres
 
     @property
     def scale(self) -> float:
@@ -52,8 +53,11 @@ OURS = Body(
     table.THIGH + table.SHIN + table.ANKLE_HEIGHT,
     table.STANCE_WIDTH,
     (table.FOOT_LENGTH, table.FOOT_WIDTH),
+    0.105,
 )
 """The robot of the table."""
+STRAIGHT_HEIGHT = 0.7223
+"""The height of its centre of mass above the soles on straight legs [m]."""
 
 
 def load_body(model_file: str = "", joint_map: str = "") -> Body:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -13,12 +14,13 @@ from numpy.typing import NDArray
 from ..spatial import Array
 from . import table
 from .body import OURS, Body
-from .measuring import Measures, measure
+from .measuring import Measures, at_zero, measure
 from .mjcf import TIMESTEP, write_mjcf
 from .obstacles import Solid, add_solids
 
 Indices = NDArray[np.intp]
 GRAVITY = 9.81
+_ANKLE_ROOM = 0.4  # rad
 _GAP = 0.06  # metres between the inner edges of the soles
 PERIOD = 4_000_000  # ns between control ticks: 250 Hz; more makes the estimate of the velocity too coarse
 
@@ -133,6 +135,7 @@ def describe(mj: mujoco.MjModel, names: Names, sole: SoleGeometry) -> HumanoidMo
             min(measures.leg_lengths),
             _stance(measures, sole),
             (2 * sole.half_length, 2 * sole.half_width),
+            _crouch(mj, joints[:6]),
         ),
         straight_height=measures.straight_height,
         mass=float(mj.body_subtreemass[base]),
@@ -147,6 +150,15 @@ def _stance(measures: Measures, sole: SoleGeometry) -> float:
     """
     usual = OURS.stance_width * min(measures.leg_lengths) / OURS.leg_length
     return min(sum(measures.outwards), max(usual, 2 * sole.half_width + _GAP))
+
+
+def _crouch(mj: mujoco.MjModel, leg: Indices) -> float:
+    """The distance by which legs may be bent [m]: ankles need room for the end of a step."""
+    geometry = _leg(mj, leg)
+    axis = float(at_zero(mj).xaxis[leg[4]][1])
+    lower, upper = mj.jnt_range[leg[4]]
+    bend = max(0.0, (-lower if axis > 0 else upper) - _ANKLE_ROOM)
+    return (geometry.thigh + geometry.shin) * (1 - math.cos(bend))
 
 
 def _leg(mj: mujoco.MjModel, joints: Indices) -> LegGeometry:
