@@ -14,6 +14,7 @@ from humanoid.control.posture import standing
 from humanoid.control.reference import GaitParameters
 from humanoid.data import SECOND, Footstep, Leg, Mode
 from humanoid.robot.model import HumanoidModel
+from humanoid.robot.obstacles import Solid
 from humanoid.show import film, pictures
 from humanoid.show.film import Film, Shot, View, views
 from humanoid.simulation import rendering
@@ -84,6 +85,23 @@ def test_goal_and_footsteps_are_on_the_floor_and_a_push_is_an_arrow(camera: Film
     assert not changed[:120].any()  # flat, and low in the picture
     pushed = drawn(camera, Shot(0, posture, push=(0.0, -40.0)))
     assert coloured(pushed, 0, 1, 2) > 60 > coloured(plain, 0, 1, 2)
+
+
+def test_obstacles_stand_as_wide_and_as_high_as_they_are(camera: Film, posture: Array) -> None:
+    solids = (
+        Solid("pillar", "cylinder", (0.9, 0.05, 0.1), -0.2, 0.7, 0.2, 1.0),
+        Solid("box", "box", (0.05, 0.7, 0.1), -0.2, -0.7, 0.4, 0.4),
+    )
+    empty = drawn(
+        camera, Shot(0, posture, solids=(Solid("far", "box", (0.0, 0.0, 0.0), -90.0, 0.0, 0.1, 0.1),))
+    )
+    full = drawn(camera, Shot(0, posture, solids=solids))
+    for strong, weak, slim in ((0, (1, 2), True), (1, (0, 2), False)):
+        changed = np.all([full[..., strong] > full[..., each] + 50 for each in weak], axis=0)
+        changed &= np.abs(full - empty).sum(axis=2) > 60
+        rows, columns = np.nonzero(changed)
+        assert len(rows) > 100
+        assert (np.ptp(rows) > 2 * np.ptp(columns)) == slim
 
 
 def test_a_line_says_time_mode_speed_and_how_fast_the_film_is(

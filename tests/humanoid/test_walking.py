@@ -14,12 +14,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from humanoid.control.reference import GaitParameters
+from humanoid.control.pace import Pace
+from humanoid.control.reference import GaitParameters, straight_steps
 from humanoid.control.stepping import Stepping
 from humanoid.data import Footstep, FootstepPlan, Leg, Mode, Support
 from humanoid.kinematics.dynamics import natural_frequency
 from humanoid.planning.footsteps import plan_footsteps
 from humanoid.robot.model import HumanoidModel
+from humanoid.robot.table import ARMS
 from humanoid.simulation.sim import QUIET, Noise
 from humanoid.spatial import to_frame, wrap
 from humanoid.trials.harness import Lockstep
@@ -66,6 +68,36 @@ def test_walks_by_sensors_alone(model: HumanoidModel, seed: int) -> None:
     robot = _walked(model, true_state=False, noise=NOISE, seed=seed)
     rms, _ = robot.foot_error()
     assert rms < 0.040
+
+
+@pytest.mark.parametrize(
+    "speed", [0.6, *(pytest.param(each, marks=pytest.mark.slow) for each in (0.1, 0.35))]
+)
+def test_walks_at_every_speed(model: HumanoidModel, speed: float) -> None:
+    pace = Pace(speed)
+    robot = Lockstep(model, seed=1, noise=NOISE, parameters=GaitParameters().at_pace(pace))
+    robot.run(0.5)
+    steps = straight_steps(8, pace.step_length, 0.18, pace.step_time)
+    assert robot.controller.follow(FootstepPlan(1, steps, (0.0, 0.0, 0.0))) == ""
+    robot.run(1.3)  # the weight moves to the left foot
+    moments = []
+    while not robot.fell and not robot.controller.stepping.standing:
+        robot.tick()
+        data, arms = robot.simulator.data, model.qpos[[arm.start for arm in ARMS]]
+        feet = robot.simulator.sole_truth().feet
+        moments.append((feet[0][0] - feet[1][0], data.qpos[arms[0]] - data.qpos[arms[1]]))
+    assert not robot.fell
+    assert robot.foot_error()[0] < 0.030
+    times = [touchdown.stamp * 1e-9 for touchdown in robot.touchdowns]
+    assert 6 * pace.step_length / (times[6] - times[0]) == pytest.approx(speed, rel=0.02)
+    # A positive angle is an arm that swings back: it does with the foot of its side in front.
+    assert np.corrcoef(np.array(moments).T)[0, 1] > 0.8
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.61, math.nan])
+def test_no_legs_walk_at_other_speeds(speed: float) -> None:
+    with pytest.raises(ValueError, match=r"0\.1 to 0\.6 m/s"):
+        Pace(speed)
 
 
 def test_walks_to_a_goal(model: HumanoidModel) -> None:

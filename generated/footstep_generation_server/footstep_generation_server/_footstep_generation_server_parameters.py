@@ -45,7 +45,7 @@ class FootstepGenerationServerParameters:
     """Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes
     [m/s]
 
-    Must be from 0.1 to 0.5. Can be set at start only.
+    Must be from 0.1 to 0.6. Can be set at start only.
     """
     model_file: str
     """A humanoid of your own as MJCF, the same for all nodes; empty for ours. Steps are as long as its
@@ -155,8 +155,8 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ParameterDescriptor(
                 description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
                 read_only=True,
-                additional_constraints="must be from 0.1 to 0.5",
-                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.5)],
+                additional_constraints="must be from 0.1 to 0.6",
+                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.6)],
             ),
         ),
         (
@@ -233,7 +233,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "walking_speed": (
-        (lambda value: 0.1 <= value <= 0.5, "must be from 0.1 to 0.5"),
+        (lambda value: 0.1 <= value <= 0.6, "must be from 0.1 to 0.6"),
     ),
     "step.backward_max": (
         (lambda value: 0.0 <= value <= 0.15, "must be from 0.0 to 0.15"),

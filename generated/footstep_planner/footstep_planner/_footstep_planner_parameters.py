@@ -20,6 +20,12 @@ class ParametersError(Exception):
 class FootstepPlannerParameters:
     """The parameters of the node footstep_planner."""
 
+    walking_speed: float
+    """Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes
+    [m/s]
+
+    Must be from 0.1 to 0.6. Can be set at start only.
+    """
     model_file: str
     """A humanoid of your own as MJCF, the same for all nodes; empty for ours
 
@@ -79,6 +85,7 @@ def read_parameters(node: Node) -> FootstepPlannerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return FootstepPlannerParameters(
+        walking_speed=values["walking_speed"],
         model_file=values["model_file"],
         joint_map=values["joint_map"],
         horizon=values["horizon"],
@@ -118,6 +125,17 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "walking_speed",
+            Parameter.Type.DOUBLE,
+            0.5,
+            ParameterDescriptor(
+                description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
+                read_only=True,
+                additional_constraints="must be from 0.1 to 0.6",
+                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.6)],
+            ),
+        ),
         (
             "model_file",
             Parameter.Type.STRING,
@@ -170,6 +188,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
+    "walking_speed": (
+        (lambda value: 0.1 <= value <= 0.6, "must be from 0.1 to 0.6"),
+    ),
     "horizon": (
         (lambda value: 2 <= value <= 32, "must be from 2 to 32"),
     ),

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from geometry_msgs.msg import Twist
 from humanoid import data
+from humanoid.control.pace import Pace
 from humanoid.planning.following import blocked_step, steps_to_last_line
 from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, shorter
 from humanoid.planning.steering import free_ahead
@@ -30,7 +31,10 @@ class FootstepPlanner(FootstepPlannerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._limits = fitted(StepLimits(), load_body(self.parameters.model_file, self.parameters.joint_map))
+        self._limits = fitted(
+            StepLimits().at_pace(Pace(self.parameters.walking_speed)),
+            load_body(self.parameters.model_file, self.parameters.joint_map),
+        )
         self._gait: GaitState | None = None
         self._points = np.zeros((0, 2))
 

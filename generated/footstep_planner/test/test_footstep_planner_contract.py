@@ -565,6 +565,16 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "walking_speed",
+        Parameter.Type.DOUBLE,
+        0.5,
+        [0.5, 0.1, 0.6, 0.35, 0.102, 0.588],
+        [0.098, 0.612],
+        description="Fastest walk straight ahead; length and time of the steps follow from it, the same for all nodes [m/s]",
+        read_only=True,
+        range=(0.1, 0.6),
+    ),
+    ParameterCase(
         "model_file",
         Parameter.Type.STRING,
         "",

@@ -77,7 +77,7 @@ class WholeBodyControllerParameters:
     """Fastest walk straight ahead; height of the body and time on both feet follow from it, the same for
     all nodes [m/s]
 
-    Must be from 0.1 to 0.5. Can be set at start only.
+    Must be from 0.1 to 0.6. Can be set at start only.
     """
     control: ControlParameters
     """The parameters `control.*`."""
@@ -192,8 +192,8 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ParameterDescriptor(
                 description="Fastest walk straight ahead; height of the body and time on both feet follow from it, the same for all nodes [m/s]",
                 read_only=True,
-                additional_constraints="must be from 0.1 to 0.5",
-                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.5)],
+                additional_constraints="must be from 0.1 to 0.6",
+                floating_point_range=[FloatingPointRange(from_value=0.1, to_value=0.6)],
             ),
         ),
         (
@@ -255,7 +255,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "walking_speed": (
-        (lambda value: 0.1 <= value <= 0.5, "must be from 0.1 to 0.5"),
+        (lambda value: 0.1 <= value <= 0.6, "must be from 0.1 to 0.6"),
     ),
     "control.period": (
         (lambda value: 0.001 <= value <= 0.01, "must be from 0.001 to 0.01"),

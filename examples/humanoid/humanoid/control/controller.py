@@ -6,8 +6,6 @@ model for kinematics and gravity, as a real robot's controller has robot_descrip
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..data import (
@@ -27,22 +25,19 @@ from ..data import (
 from ..kinematics.dynamics import RobotState, natural_frequency, world_velocity
 from ..kinematics.legs import Legs
 from ..robot.model import PERIOD, HumanoidModel
-from ..robot.table import LEGS, UPPER_BODY
+from ..robot.table import LEGS
 from ..spatial import Array, cross, quaternion_of, rotation_vector, rotation_z, vector_of
 from . import balance, effort
 from .fitting import fitted
 from .inputs import LATE, LEASE, Inputs, Leases
-from .posture import level, relaxed, standing
+from .posture import level, standing
 from .reference import GaitParameters, Sample
 from .stepping import Stepping
 from .support import support_polygon
+from .upper_body import UpperBody
 
 _FALLEN_HEIGHT = 0.68  # of base_link, as a share of the legs' length
 _RECOVERY = 1_000_000_000  # ns without a fault until the robot takes commands again
-_ARM_SPEED = 6.0  # rad/s: how fast set-points of the upper body follow the requested posture
-_SQUAT_SPEED = 0.15  # m/s
-_DEEPEST = 0.15  # m that the pelvis of our robot can be lowered
-_SLACK = 1e-3  # rad that a posture may be out of a joint's range
 _MADE_UP = 5  # missed ticks in a row that the reference catches up with
 # rad/s that a joint's set-point moves at most. Ordinary walks stay below it. A foot that lands away from
 # where the pelvis is would need four times as much in one tick, and a lead that large is out of every
@@ -77,10 +72,7 @@ class WholeBodyController:
         self._feedback = balance.DcmFeedback(self.parameters, self._period)
         self._joints = standing(model, self.stepping.feet, self.parameters)[0]
         self._command = self._joints.copy()
-        self._asked: Posture | None = None
-        self._relaxed = relaxed(model.body)
-        self._squat = 0.0
-        self._deepest = _DEEPEST * model.body.scale
+        self._upper = UpperBody(model)
         self._fallen_height = _FALLEN_HEIGHT * model.body.leg_length
         self._started = False
         self._reason = ""
@@ -98,16 +90,12 @@ class WholeBodyController:
 
     def posture(self, wanted: Posture | None) -> str:
         """Bring waist, head, arms and pelvis to a posture, or back to standing; returns why not, or ""."""
-        if wanted is not None and not (
-            wanted.position.shape == self._relaxed.shape
-            and np.isfinite(wanted.position).all()
-            and math.isfinite(wanted.squat)
-        ):
+        if wanted is not None and (problem := self._upper.problem(wanted)):
             self.inputs.refusals.not_finite += 1
-            return f"a posture needs {self._relaxed.size} finite positions and a finite depth"
-        if wanted is not None and (why_not := self._halted or self._out_of_reach(wanted)):
+            return problem
+        if wanted is not None and (why_not := self._halted or self._upper.out_of_reach(wanted)):
             return why_not
-        self._asked = wanted
+        self._upper.asked = wanted
         return ""
 
     def emergency_stop(self, status: EmergencyStop) -> None:
@@ -140,7 +128,7 @@ class WholeBodyController:
             return Mode.EMERGENCY_STOP
         if self._reason:
             return Mode.HOLDING
-        if self._asked is not None:
+        if self._upper.asked is not None:
             return Mode.DANCING
         if self.stepping.standing:
             return Mode.STANDING
@@ -197,18 +185,6 @@ class WholeBodyController:
             return ""
         return f"{self.mode.name.lower().replace('_', ' ')}: {self._why}"
 
-    def _out_of_reach(self, wanted: Posture) -> str:
-        """The reason why a posture cannot be taken, or ""."""
-        lower, upper = self.model.lower[UPPER_BODY], self.model.upper[UPPER_BODY]
-        beyond = np.maximum(wanted.position - upper, lower - wanted.position)
-        worst = int(np.argmax(beyond)) if beyond.size else 0
-        if beyond.size and beyond[worst] > _SLACK:
-            name, there = self.model.body.upper_body[worst], wanted.position[worst]
-            return f"{name} cannot be at {there:.2f} rad: {lower[worst]:.2f} to {upper[worst]:.2f}"
-        if not 0.0 <= wanted.squat <= self._deepest:
-            return f"the pelvis can be lowered by 0 to {self._deepest:.2g} m, not by {wanted.squat:.2f}"
-        return ""
-
     def _look_for_faults(self, now: int) -> None:
         """Hold if a reading or a node is missing, until it has been back for a while."""
         silent = self._leases.problem(now)
@@ -230,7 +206,7 @@ class WholeBodyController:
         return self._reason
 
     def _halt(self) -> None:
-        self._asked = None
+        self._upper.asked = None
         self.stepping.land_now()
 
     def _sense(self, joints: JointStates, imu: Imu, odometry: Odometry) -> None:
@@ -247,7 +223,7 @@ class WholeBodyController:
             self._joints = joints.position.copy()
             # The robot may stand higher or lower than it will walk: it goes there slowly.
             floor = min(state.sole(side)[0][2] for side in (0, 1))
-            self._squat = self.parameters.com_height - float(state.com[2] - floor)
+            self._upper.squat = self.parameters.com_height - float(state.com[2] - floor)
         lowest = min(state.sole(side)[0][2] for side in (0, 1))
         self._fallen = self._fallen or odometry.position[2] - lowest < self._fallen_height
 
@@ -265,7 +241,7 @@ class WholeBodyController:
         stepping.keep_near(state.com[:2])
         stepping.adjust(self.error)
         stance = sample.swing.leg.other.side if sample.swing else None
-        height = parameters.com_height - self._squat
+        height = parameters.com_height - self._upper.squat
         zmp = self._feedback.zmp(sample.zmp, self.error)
         load = balance.distribute(zmp, soles, stance, self.model.sole, parameters)
         force = effort.wanted_force(state, load.zmp, self._omega, height)
@@ -286,27 +262,18 @@ class WholeBodyController:
     def _inverse_kinematics(self, sample: Sample, height: float) -> Array:
         """Joint positions that put the soles and the centre of mass where the reference has them."""
         targets = self.stepping.targets()
-        joints = self._upper_body()
         rotation = self._level(rotation_z((targets[0][0][2] + targets[1][0][2]) / 2))
         self._planned.set_posture(np.zeros(3), quaternion_of(rotation), self._joints)
-        com = self.stepping.com
+        com, axis = self.stepping.com, rotation_z(targets[0][0][2])[:2, 0]
+        ahead = [float((foot[:2] - com) @ axis) for foot, _ in targets]
+        speed = float(self.stepping.velocity @ axis)
+        joints = self._upper.move(self._joints, ahead, speed, self._elapsed)
         pelvis = (np.array([com[0], com[1], height]) - self._planned.com, rotation)
         for side, (foot, lifted) in enumerate(targets):
             swinging = sample.swing is not None and sample.swing.leg.side == side
             base = self._towards_measured(pelvis, min(1.0, _BLEND * sample.phase)) if swinging else pelvis
             leg = LEGS[side]
             joints[leg] = self._legs.solve(side, base, level(foot, lifted), self._joints[leg])
-        return joints
-
-    def _upper_body(self) -> Array:
-        """The last joint positions, with waist, head and arms moved towards the requested posture."""
-        joints = self._joints.copy()
-        wanted = self._relaxed if self._asked is None else self._asked.position
-        squat = 0.0 if self._asked is None else self._asked.squat
-        way = _ARM_SPEED * self._elapsed
-        joints[UPPER_BODY] += np.clip(wanted - joints[UPPER_BODY], -way, way)
-        way = _SQUAT_SPEED * self._elapsed
-        self._squat += min(max(squat - self._squat, -way), way)
         return joints
 
     def _level(self, rotation: Array) -> Array:

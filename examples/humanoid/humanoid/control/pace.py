@@ -13,12 +13,13 @@ import numpy as np
 from ..data import STEP_TIME
 from ..robot.table import STANCE_WIDTH
 
-SLOWEST, FASTEST, USUAL = 0.1, 0.5, 0.5  # m/s
-# What walks best at these speeds [m/s], between which the others lie: time on both feet [s], and the height
-# of the centre of mass [m].
-_SPEEDS = (0.225, 0.5)
-_DOUBLE_SUPPORTS = (0.20, 0.10)
-_HEIGHTS = (0.70, 0.62)
+SLOWEST, FASTEST, USUAL = 0.1, 0.6, 0.5  # m/s
+# What walks best at these speeds [m/s], between which the others lie: time from lift-off to touchdown and on
+# both feet [s], and the height of the centre of mass [m].
+_SPEEDS = (0.225, 0.5, 0.6)
+_STEP_TIMES = (STEP_TIME, STEP_TIME, 0.50)
+_DOUBLE_SUPPORTS = (0.20, 0.10, 0.10)
+_HEIGHTS = (0.70, 0.62, 0.62)
 _SPARE = 0.25  # metres between the soles, beyond a step straight ahead, for steps that also turn or go aside
 SHORTEST_TIME = 0.4  # seconds from lift-off to touchdown: legs that swing faster throw the robot over
 
@@ -41,7 +42,7 @@ class Pace:
     @property
     def step_time(self) -> float:
         """Time from lift-off to touchdown [s]."""
-        return STEP_TIME
+        return float(np.interp(self.speed, _SPEEDS, _STEP_TIMES))
 
     @property
     def double_support(self) -> float:

@@ -19,7 +19,9 @@ from ..spatial import Array, rotation_z
 from .pictures import write_line
 
 _QUARTER = 142.0  # degrees from the robot's heading to that of the camera, which looks at its front
-_DISTANCE, _ELEVATION, _HEIGHT = 2.7, -12.0, 0.66  # m, degrees, m of the point that the camera looks at
+_HEIGHT = 0.66  # m, of the point that the camera looks at
+_DISTANCE, _ELEVATION = 2.7, -12.0  # m, degrees
+_ABOVE = 3.4, -25.0  # the same where obstacles may hide the robot's feet
 _CALM = {"place": 0.5, "heading": 1.2}  # s over which the camera evens out what the robot does
 _SUN = np.array([-0.32, -0.42, -0.85])  # where its light goes
 _SUN_DISTANCE = 3.0  # m
@@ -104,7 +106,8 @@ class Film:
     def draw(self, shot: Shot, view: View, note: str) -> Picture:
         """A picture with a line of text: time, what the robot does, and the note at the right."""
         camera, scene = self._camera, self._renderer.scene
-        camera.distance, camera.elevation, camera.azimuth = _DISTANCE, _ELEVATION, view.azimuth
+        camera.distance, camera.elevation = _ABOVE if shot.solids else (_DISTANCE, _ELEVATION)
+        camera.azimuth = view.azimuth
         camera.lookat[:] = view.x, view.y, _HEIGHT
         _shine(self._mj, view.x, view.y)
         self._data.qpos[:] = shot.posture

@@ -16,9 +16,9 @@ from ..simulation.rendering import Picture, RenderingError, image
 
 _INK, _PAPER = (255, 255, 255), (28, 33, 40)
 _LINE = 0.062  # height of the letters, as a share of that of the picture
-_COLOURS, _BRIGHT_COLOURS = 40, 12
+_COLOURS, _BRIGHT_COLOURS = 56, 12
 _BRIGHT = 90  # difference of the greatest and the least part of a colour
-_SAMPLES = 16  # pictures that a palette is made of
+_SAMPLES = 16  # pictures whose common colours a palette is made of
 _FFMPEG = (
     *("ffmpeg", "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"),
     *("-s", "{width}x{height}", "-r", "{rate}", "-i", "-"),
@@ -62,7 +62,7 @@ def save_gif(pictures: Sequence[Picture], path: Path, frame_time: int) -> None:
     if not pictures:
         raise RenderingError("there is no picture to make an animation of")
     pillow = image()
-    palette = _palette(pillow, pictures[:: max(1, len(pictures) // _SAMPLES)])
+    palette = _palette(pillow, pictures)
     frames = [pillow.fromarray(picture).quantize(palette=palette, dither=0) for picture in pictures]
     frames[0].save(path, save_all=True, append_images=frames[1:], duration=frame_time, loop=0)
 
@@ -70,10 +70,11 @@ def save_gif(pictures: Sequence[Picture], path: Path, frame_time: int) -> None:
 def _palette(pillow: ModuleType, pictures: Sequence[Picture]) -> Any:
     """Return one palette for all pictures: otherwise colours flicker, and the file is larger.
 
-    Footsteps and arrows are small, so the bright colours have places of their own.
+    Footsteps and arrows are small, and not in all of them, so the bright colours of each picture count.
     """
-    pixels = np.concatenate([picture[::2, ::2].reshape(-1, 3) for picture in pictures])
-    bright = pixels[np.ptp(pixels.astype(np.int16), axis=1) > _BRIGHT]
+    coarse = [picture[::2, ::2].reshape(-1, 3) for picture in pictures]
+    pixels = np.concatenate(coarse[:: max(1, len(coarse) // _SAMPLES)])
+    bright = np.concatenate([each[np.ptp(each.astype(np.int16), axis=1) > _BRIGHT] for each in coarse])
     colours: list[int] = []
     often, rare = pillow.Quantize.MEDIANCUT, pillow.Quantize.MAXCOVERAGE
     parts = ((pixels, _COLOURS, often), (bright, _BRIGHT_COLOURS, often), (bright, _BRIGHT_COLOURS, rare))
