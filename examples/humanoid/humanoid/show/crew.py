@@ -52,6 +52,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "emergency_stop",
         "battery_monitor",
         "motion_planner",
+        "speech_recognition",
         "footstep_planner",
         "footstep_generation_server",
         "navigation_action_server",
