@@ -28,7 +28,7 @@ def _scale(element: ElementTree.Element, key: str, place: int, factor: float) ->
 
 
 def offset_hips() -> str:
-    """A robot whose hip axes pass each other at a distance, with other axes first, 7-joint arms and no neck.
+    """A robot whose hip axes pass each other at a distance, with other axes first, 7-joint arms with a finger, no neck.
 
     The hip turns about y, then x, then z, as many robots' do; each axis is centimetres from the one before.
     The ankle's axes do not meet either.
@@ -54,6 +54,9 @@ def offset_hips() -> str:
             wrist.remove(geom)
             hand.append(geom)
         ElementTree.SubElement(wrist, "geom", type="sphere", size="0.02", mass="0.05")
+        finger = ElementTree.SubElement(hand, "body", name=f"{side}_finger", pos="0.03 0.0 -0.1")
+        ElementTree.SubElement(finger, "joint", name=f"{side}_grip", type="slide", range="-0.01 0.01")
+        ElementTree.SubElement(finger, "geom", type="sphere", size="0.01", mass="0.02")
     neck = bodies["neck"]
     bodies["torso"].remove(neck)
     for tag in ("actuator", "sensor"):  # they are somebody else's, and replaced

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -36,6 +38,7 @@ def loaded(folder: Path, text: str) -> HumanoidModel:
     return load_external(path)
 
 
+_LIBRARY = Path(__file__).parents[2] / "examples" / "humanoid"
 FOOT = '<geom type="box" size="0.11 0.055 0.0175"'
 REFUSED = [
     ({' 0.0 -0.3"': ' 0.0 -0.05"', '-0.0 -0.3"': '-0.0 -0.05"'}, "the leg of joint 'l_knee' is 0.16 m long from hip to sole; walking takes 0.35 m"),
@@ -140,6 +143,7 @@ def test_offset_hips_other_arms_and_no_neck(tmp_path: Path) -> None:
     assert not model.has_our_legs
     assert model.body.upper_body[3:10] == tuple(f"l_{name}" for name in (*table.ARM_JOINTS, "wrist_yaw"))
     assert "head_yaw" not in model.body.joints
+    assert model.body.joints[-2:] == ("l_grip", "r_grip")
     joints, base = start(model)
     state = RobotState(model)
     state.set_posture(base, np.array([0.0, 0.0, 0.0, 1.0]), joints)
@@ -185,6 +189,20 @@ def test_its_description_is_the_same_robot(tmp_path: Path, text: str) -> None:
             assert np.abs(data.body(name).xpos - ours.site_xpos[site]).max() < 1e-9
             assert np.abs(data.body(name).xmat - ours.site_xmat[site]).max() < 1e-9
         assert np.abs(data.subtree_com[0] - ours.subtree_com[model.base]).max() < 1e-9
+
+
+def test_a_walk_that_ends_far_from_its_goal_has_failed(tmp_path: Path) -> None:
+    program = tmp_path / "arriving.py"  # a node's module needs an rclpy
+    program.write_text(
+        f"import sys\nsys.path.insert(0, {str(_LIBRARY)!r})\n"
+        "from humanoid.show.director import Score\nscore = Score()\n"
+        "score.arrive('walk 1 0 0', 0.03)\nscore.arrive('walk 1 0 0', 0.104)\nprint(score.failures)\n"
+    )
+    command = [sys.executable, "-m", "ifgen", "run", "--transport", "local", str(program)]
+    done = subprocess.run(
+        command, capture_output=True, text=True, timeout=100, check=True, cwd=_LIBRARY.parents[1]
+    )
+    assert done.stdout.strip() == "['walk 1 0 0: it ended 104 mm from its goal, more than 80']"
 
 
 def test_two_legs_are_enough(tmp_path: Path) -> None:

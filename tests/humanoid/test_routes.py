@@ -39,21 +39,21 @@ def test_a_wall_is_walked_round() -> None:
     assert route.status is RouteStatus.PLANNED
     assert room(route.places, WALL) >= CLEARANCE - 0.01
     shortest = 2 * math.hypot(1.5, 1.0 + CLEARANCE)
-    assert shortest - 0.2 < route.length < shortest * 1.12
+    assert shortest - 0.2 < route.length < shortest * 1.15
     assert len(route.places) < 7
 
 
 @pytest.mark.parametrize(
     ("goal", "points", "status", "why"),
     [
-        ((1.4, 0.3), WALL, RouteStatus.GOAL_OCCUPIED, "is 0.10 m from an obstacle; I keep 0.42 m"),
+        ((1.4, 0.3), WALL, RouteStatus.GOAL_OCCUPIED, "is 0.10 m from an obstacle; I keep 0.37 m"),
         ((math.nan, 0.3), WALL, RouteStatus.INVALID_REQUEST, "not finite"),
         ((3.0, 0.0), np.array([[0.1, 0.0]]), RouteStatus.BLOCKED, "where the robot stands"),
         (
             (3.0, 0.0),
             disc_points(Obstacle("ring", 0.0, 0.0, 1.0))[:24],
             RouteStatus.BLOCKED,
-            "no way of 0.84 m width leads to (3.00, 0.00)",
+            "no way of 0.74 m width leads to (3.00, 0.00)",
         ),
     ],
 )
@@ -96,7 +96,7 @@ def test_steps_along_random_routes_keep_away_and_are_steps_that_legs_can_take() 
             assert after is None or after.leg is step.leg.other
             ahead, aside = to_frame(feet[step.leg.other.side], step.pose[:2])
             assert 0.10 < step.leg.sign * aside < 0.32
-            assert abs(ahead) < 0.30
+            assert abs(ahead) < LIMITS.forward + 0.05
             assert abs(wrap(step.yaw - feet[step.leg.other.side][2])) < 0.4
             feet[step.leg.side] = step.pose
         assert blocked_step(steps, points, HERE.centre, LIMITS) == ""
@@ -108,7 +108,7 @@ def test_steps_along_random_routes_keep_away_and_are_steps_that_legs_can_take() 
 def test_a_step_towards_an_obstacle_is_seen_and_one_away_from_it_is_not() -> None:
     plan = plan_footsteps(HERE, (1.0, 0.0, 0.0), first_leg=Leg.RIGHT).plan
     assert blocked_step(plan.steps, np.array([[0.9, 0.0]]), HERE.centre, LIMITS).startswith(
-        "step 4 of 7 is 0."
+        "step 2 of 4 is 0."
     )
     assert blocked_step(plan.steps, np.array([[-0.2, 0.0]]), HERE.centre, LIMITS) == ""
     assert blocked_step(plan.steps, NOTHING, HERE.centre, LIMITS) == ""

@@ -11,7 +11,7 @@ from humanoid import data
 from humanoid.control.pace import Pace
 from humanoid.planning.following import blocked_step, steps_to_last_line
 from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, shorter
-from humanoid.planning.steering import free_ahead
+from humanoid.planning.steering import Ahead, free_ahead
 from humanoid.robot.body import load_body
 from humanoid.ros import messages
 from humanoid.ros.grids import read_occupancy_grid, read_path
@@ -24,6 +24,7 @@ from footstep_planner._footstep_planner_base import FootstepPlannerBase
 from footstep_planner._footstep_planner_parameters import ParametersError
 
 _FRAMES = ("", "odom")
+_SHORT = 0.18  # m
 
 
 class FootstepPlanner(FootstepPlannerBase):
@@ -31,10 +32,10 @@ class FootstepPlanner(FootstepPlannerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._limits = fitted(
-            StepLimits().at_pace(Pace(self.parameters.walking_speed)),
-            load_body(self.parameters.model_file, self.parameters.joint_map),
-        )
+        values = self.parameters
+        self._pace = Pace(values.walking_speed)
+        body = load_body(values.model_file, values.joint_map)
+        self._limits = fitted(StepLimits().at_pace(self._pace), body)
         self._gait: GaitState | None = None
         self._points = np.zeros((0, 2))
 
@@ -55,7 +56,8 @@ class FootstepPlanner(FootstepPlannerBase):
         if self._gait is not None and len(self._points) and any(velocity):
             centre = messages.read_gait_state(self._gait).stance.centre
             values = self.parameters
-            if not free_ahead(centre, velocity, self._points, self._limits, values.horizon, values.clearance):
+            ahead = Ahead(values.horizon, values.clearance, self._pace.double_support)
+            if not free_ahead(centre, velocity, self._points, self._limits, ahead):
                 self.get_logger().warning("stopped: an obstacle is in the way", throttle_duration_sec=2.0)
                 message = Twist()
         self.publish_humanoid_cmd_vel(message)
@@ -71,24 +73,38 @@ class FootstepPlanner(FootstepPlannerBase):
             response.status = int(PlanStatus.INVALID_REQUEST)
             response.message = str(error)[:255]
             return response
-        limits = shorter(self._limits, request.max_step_length)
+        # Long steps cut corners: where they come too near to something, shorter ones may not.
+        for longest in (request.max_step_length, min(request.max_step_length or _SHORT, _SHORT)):
+            await self._follow(request, places, yaw, longest, response)
+            if response.status != int(PlanStatus.BLOCKED):
+                break
+        return response
+
+    async def _follow(
+        self,
+        request: FollowPath.Request,
+        places: tuple[tuple[float, float], ...],
+        yaw: float,
+        longest: float,
+        response: FollowPath.Response,
+    ) -> None:
+        """Fill in the response for steps of a length."""
+        limits = shorter(self._limits, longest)
         start = messages.read_stance(request.start)
         leg = data.Leg(request.first_leg) if request.first_leg else None
         steps, stance = steps_to_last_line(start, places, limits, leg, request.first_index)
         index = request.first_index + len(steps)
-        if steps:
-            leg = steps[-1].leg.other
         asked = PlanFootsteps.Request(
             start=messages.stance(stance, messages.nanoseconds(request.start.header.stamp)),
             goal=messages.stamped(0, messages.planar_pose(*places[-1], yaw)),
-            first_leg=int(leg or 0),
-            max_step_length=request.max_step_length,
+            first_leg=int((steps[-1].leg.other if steps else leg) or 0),
+            max_step_length=longest,
         )
         try:
             rest = await self.call_plan_footsteps(asked, timeout_sec=self.parameters.service_timeout)
         except TimeoutError as error:
-            response.message = str(error)[:255]
-            return response
+            response.status, response.message = int(PlanStatus.UNKNOWN), str(error)[:255]
+            return
         if rest.status == int(PlanStatus.PLANNED):
             steps += [
                 replace(step, index=index + number)
@@ -96,16 +112,13 @@ class FootstepPlanner(FootstepPlannerBase):
             ]
         elif not (rest.status == int(PlanStatus.ALREADY_THERE) and steps):
             response.status, response.message = rest.status, rest.message
-            return response
+            return
         if problem := blocked_step(steps, self._points, start.centre, limits):
-            response.status = int(PlanStatus.BLOCKED)
-            response.message = problem[:255]
-            return response
-        response.status = int(PlanStatus.PLANNED)
-        goal = (*places[-1], yaw)
-        plan = data.FootstepPlan(0, tuple(steps), goal)
+            response.status, response.message = int(PlanStatus.BLOCKED), problem[:255]
+            return
+        response.status, response.message = int(PlanStatus.PLANNED), ""
+        plan = data.FootstepPlan(0, tuple(steps), (*places[-1], yaw))
         response.plan = messages.footstep_plan(plan, self.get_clock().now().nanoseconds)
-        return response
 
     @staticmethod
     def _check(request: FollowPath.Request) -> None:

@@ -30,10 +30,17 @@ MICROPHONE_AUDIO_SUBSCRIPTION_QOS = QoSProfile(
     depth=25,
     reliability=ReliabilityPolicy.BEST_EFFORT,
 )
+SPEECH_TYPED_SUBSCRIPTION_QOS = QoSProfile(
+    history=HistoryPolicy.KEEP_LAST,
+    depth=10,
+    reliability=ReliabilityPolicy.RELIABLE,
+)
 
 
 class SpeechRecognitionBase(Node, ABC):
-    """Turns what the microphone hears into text, one message an utterance."""
+    """Turns what the microphone hears, and what people type, into text, one message an utterance. It spots
+    the few words of its own synthetic voice; it does not understand human speech.
+    """
 
     parameters: SpeechRecognitionParameters
     """The values of all parameters; each accepted change puts new ones in their place."""
@@ -47,6 +54,11 @@ class SpeechRecognitionBase(Node, ABC):
     """Blocks of 20 ms of sound, one channel
 
     `/microphone/audio`, std_msgs/msg/Int16MultiArray.
+    """
+    speech_typed_subscription: Subscription[String]
+    """A line that somebody types instead of speaking, with or without the hot word
+
+    `/speech/typed`, std_msgs/msg/String.
     """
     set_listening_service: Service[SetBool]
     """Begin or end listening
@@ -70,6 +82,12 @@ class SpeechRecognitionBase(Node, ABC):
             self.on_microphone_audio,
             MICROPHONE_AUDIO_SUBSCRIPTION_QOS,
         )
+        self.speech_typed_subscription = self.create_subscription(
+            String,
+            "/speech/typed",
+            self.on_speech_typed,
+            SPEECH_TYPED_SUBSCRIPTION_QOS,
+        )
         self.set_listening_service = self.create_service(
             SetBool,
             "~/set_listening",
@@ -88,6 +106,13 @@ class SpeechRecognitionBase(Node, ABC):
         """Take a message from `/microphone/audio`.
 
         Blocks of 20 ms of sound, one channel
+        """
+
+    @abstractmethod
+    def on_speech_typed(self, message: String) -> None:
+        """Take a message from `/speech/typed`.
+
+        A line that somebody types instead of speaking, with or without the hot word
         """
 
     @abstractmethod

@@ -23,12 +23,12 @@ class SpeechRecognitionParameters:
     language: str
     """Language that is listened for (BCP 47)
 
-    Must be one of "en-GB", "en-US", "de-DE", "fr-FR", "ja-JP".
+    Must be one of "en-GB", "en-US".
     """
     sample_rate: int
     """Samples a second in the sound [Hz]
 
-    Must be one of 8000, 16000, 48000. Can be set at start only.
+    Must be one of 16000, 48000. Can be set at start only.
     """
     hot_word: str
     """Word that an utterance must begin with; empty for none
@@ -118,7 +118,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             "en-GB",
             ParameterDescriptor(
                 description="Language that is listened for (BCP 47)",
-                additional_constraints='must be one of "en-GB", "en-US", "de-DE", "fr-FR", "ja-JP"',
+                additional_constraints='must be one of "en-GB", "en-US"',
             ),
         ),
         (
@@ -128,7 +128,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             ParameterDescriptor(
                 description="Samples a second in the sound [Hz]",
                 read_only=True,
-                additional_constraints="must be one of 8000, 16000, 48000",
+                additional_constraints="must be one of 16000, 48000",
             ),
         ),
         (
@@ -155,10 +155,10 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
     "language": (
-        (lambda value: value in ["en-GB", "en-US", "de-DE", "fr-FR", "ja-JP"], 'must be one of "en-GB", "en-US", "de-DE", "fr-FR", "ja-JP"'),
+        (lambda value: value in ["en-GB", "en-US"], 'must be one of "en-GB", "en-US"'),
     ),
     "sample_rate": (
-        (lambda value: value in [8000, 16000, 48000], "must be one of 8000, 16000, 48000"),
+        (lambda value: value in [16000, 48000], "must be one of 16000, 48000"),
     ),
     "hot_word": (
         (lambda value: len(value) <= 32, "must have at most 32 characters"),

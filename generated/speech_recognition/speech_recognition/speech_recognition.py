@@ -1,16 +1,13 @@
-"""The node speech_recognition: written once by ifgen, yours from then on.
-
-`ifgen run -m speech_recognition.speech_recognition` runs it with a ROS 2 or without.
-Plain `python` needs a ROS 2 that is sourced.
-"""
+"""The node speech_recognition: spots words in the sound of the microphone, and takes typed lines."""
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
-import rclpy
-from rclpy.executors import ExternalShutdownException
+import numpy as np
+from humanoid.ros.running import run
+from humanoid.sensing import voice
+from humanoid.sensing.hearing import Listener, understood
 from std_msgs.msg import Int16MultiArray, String
 from std_srvs.srv import SetBool
 
@@ -19,43 +16,52 @@ from speech_recognition._speech_recognition_parameters import ParametersError
 
 
 class SpeechRecognition(SpeechRecognitionBase):
-    """Turns what the microphone hears into text, one message an utterance."""
+    """Collects blocks of sound to utterances, and passes on those that begin with the hot word."""
 
     def __init__(self, **options: Any) -> None:
-        """Take the options of `rclpy.node.Node`."""
         super().__init__(**options)
-        self.publish_speech_text(String())
+        self._listening = True
+        self._listener: Listener | None = None  # its patterns take time, and often nobody speaks
 
     def on_microphone_audio(self, message: Int16MultiArray) -> None:
-        """Take a message from `/microphone/audio`.
+        """Listen to a block of sound."""
+        if not self._listening:
+            return
+        if self._listener is None:
+            self._listener = Listener(silence=self.parameters.silence_time)
+        block = np.array(message.data, dtype=np.int16)
+        share = self.parameters.sample_rate // voice.RATE
+        if share > 1:
+            whole = block[: len(block) // share * share].reshape(-1, share)
+            block = whole.mean(axis=1).astype(np.int16)
+        heard = self._listener.hear(block)
+        if heard is None:
+            return
+        words = understood(heard, self.parameters.hot_word)
+        if words:
+            self.publish_speech_text(String(data=words))
+        else:
+            self.get_logger().info(f"heard '{heard}', which is not for me")
 
-        Blocks of 20 ms of sound, one channel
-        """
-        self.get_logger().debug("message on /microphone/audio")
+    def on_speech_typed(self, message: String) -> None:
+        """Pass on a line that somebody typed; the hot word is not needed."""
+        words = message.data.strip().lower()
+        words = understood(words, self.parameters.hot_word) or understood(words)
+        if words:
+            self.publish_speech_text(String(data=words))
 
     def handle_set_listening(self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        """Answer a request to `~/set_listening`.
-
-        Begin or end listening
-        """
+        """Begin or end listening to the microphone."""
+        self._listening = request.data
+        if self._listener is not None:
+            self._listener.forget()
+        response.success = True
         return response
 
 
 def main(args: list[str] | None = None) -> None:
-    """Run the node until Ctrl-C or a shutdown from outside."""
-    rclpy.init(args=args)
-    try:
-        node = SpeechRecognition()
-    except ParametersError as error:
-        rclpy.try_shutdown()
-        sys.exit(f"speech_recognition: {error}")
-    try:
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        node.destroy_node()
-        rclpy.try_shutdown()
+    """Run the node."""
+    run(SpeechRecognition, args, ParametersError)
 
 
 if __name__ == "__main__":

@@ -71,6 +71,7 @@ def ignore(*_: Any) -> None:
 # Your callbacks, which do nothing but where a test is about one of them.
 IDLE: dict[str, Any] = {
     "on_microphone_audio": idle,
+    "on_speech_typed": idle,
     "handle_set_listening": idle,
     "on_parameters_changed": ignore,
 }
@@ -233,6 +234,15 @@ SUBSCRIPTIONS = [
         "microphone_audio_subscription",
         std_msgs_msg_Int16MultiArray,
     ),
+    Topic(
+        "/speech/typed",
+        "std_msgs/msg/String",
+        std_msgs.msg.String,
+        QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE),
+        "on_speech_typed",
+        "speech_typed_subscription",
+        std_msgs_msg_String,
+    ),
 ]
 # fmt: on
 
@@ -385,7 +395,7 @@ PARAMETERS = [
         "language",
         Parameter.Type.STRING,
         "en-GB",
-        ["en-GB", "en-US", "de-DE", "fr-FR", "ja-JP"],
+        ["en-GB", "en-US"],
         ["xxxxx"],
         description="Language that is listened for (BCP 47)",
     ),
@@ -393,8 +403,8 @@ PARAMETERS = [
         "sample_rate",
         Parameter.Type.INTEGER,
         16000,
-        [16000, 8000, 48000],
-        [7999],
+        [16000, 48000],
+        [15999],
         description="Samples a second in the sound [Hz]",
         read_only=True,
     ),

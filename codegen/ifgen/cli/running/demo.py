@@ -37,7 +37,7 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
     default="all",
     show_default=True,
     shell_complete=_complete,
-    help="What to show: all, dance, obstacles, push, stop, walk, or a .yaml file of yours.",
+    help="What to show: all, dance, obstacles, people, push, stop, walk, or a .yaml file of yours.",
 )
 @click.option("--idle", is_flag=True, help="No scenario: the robot stands, and waits for other programs.")
 @click.option("--without", metavar="NODE", multiple=True, help="Leave out a node; may be repeated.")

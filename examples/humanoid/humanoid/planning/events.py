@@ -8,7 +8,8 @@ WHEN is one of
 WHAT is one of
 * `push MOMENTUM DEGREES`: push the torso [N s] towards a direction, seen from above, in odom
 * `press`, `release`: the button of the emergency stop
-* `say WORDS`: words for /speech/text
+* `say WORDS`: type words for /speech/typed
+* `speak WORDS`: say words that the voice of sensing/voice.py knows, into the microphone
 * `joystick FORWARD LEFT TURN for S`: push the sticks, each -1 to 1, with the dead man's button held
 * `move NAME X Y`: bring an obstacle to another place [m]
 """
@@ -20,7 +21,9 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-Act = Literal["push", "press", "release", "say", "joystick", "move"]
+from ..sensing.voice import WORDS
+
+Act = Literal["push", "press", "release", "say", "speak", "joystick", "move"]
 
 _NUMBERS: dict[str, int] = {"push": 2, "press": 0, "release": 0}
 _AFTER_TASK = re.compile(r"(after )?task (\d+)(?: *\+ *(\S+))?")
@@ -69,6 +72,8 @@ def _when(text: str) -> tuple[int, bool, float]:
 def _what(act: str, rest: str) -> tuple[str, tuple[float, ...]]:
     match act:
         case "say" if rest:
+            return rest, ()
+        case "speak" if rest and all(word in WORDS for word in rest.split()):
             return rest, ()
         case "joystick" if found := _JOYSTICK.fullmatch(rest):
             return "", tuple(map(_number, found.groups()))

@@ -14,7 +14,7 @@ from ..spatial import Array, wrap
 from .footsteps import StepLimits, advance, beside, footstep
 
 AHEAD = 0.30
-"""How far ahead of the body the point is that it walks to [m]."""
+"""How far ahead of the body the point is that it walks to, at least [m]; a long step looks farther."""
 
 NEAREST = 0.30
 """No step takes the body nearer to an obstacle than this [m], unless it leads away from it."""
@@ -48,7 +48,7 @@ def steps_to_last_line(
             break
         if lengths[-1] - along < limits.near:
             break
-        target = _at(route, lengths, along + AHEAD)
+        target = _at(route, lengths, along + max(AHEAD, limits.forward))
         base = advance(base, leg, _motion(base, target, limits), limits)
         steps.append(footstep(first_index + len(steps), leg, base, limits))
         leg = leg.other

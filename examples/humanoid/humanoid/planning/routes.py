@@ -21,13 +21,13 @@ from ..spatial import Array
 
 Place = tuple[float, float]
 
-CLEARANCE = 0.42
+CLEARANCE = 0.37
 """From the middle of the body to what is on the floor [m]: its half width, swaying, and errors of the map."""
 
 _CELL = 0.10  # m
 _MARGIN = 2.5  # m around start and goal that the search looks at
 _LARGEST = 200_000  # cells that it looks at
-_NEAR, _PRICE = 0.25, 1.0  # m beyond the clearance within which a way costs up to this much more
+_NEAR, _PRICE = 0.25, 2.0  # m beyond the clearance within which a way costs up to this much more
 _ESCAPE = 20.0  # price of a cell within the clearance, to leave it from where the robot stands
 _BODY = 0.20  # m: with something this near the robot cannot go on
 _FARTHEST = 1000.0  # m from the origin

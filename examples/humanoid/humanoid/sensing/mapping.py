@@ -29,7 +29,7 @@ _AROUND = 3  # cells around an occupied one that may hold the same obstacle
 _LEVEL = 0.1  # share of a ray that must be ahead
 _WIDTH, _HEIGHT, _FOCAL, _HORIZON = 200, 145, 91.0, 9.0  # of the levelled picture, in pixels
 _MOST, _OCCUPIED = 100.0, 20.0
-_DEPTHS = (0.2, 0.45)  # m: least and most that an obstacle is taken to be deep
+_DEPTHS = (0.15, 0.35)  # m: least and most that an obstacle is taken to be deep
 
 
 Mask = NDArray[np.bool_]

@@ -3,28 +3,34 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
+import numpy as np
 import rclpy
 from geometry_msgs.msg import Point, Vector3, Wrench, WrenchStamped
 from humanoid_interfaces.msg import ObstacleMotion, TaskStatus
+from numpy.typing import NDArray
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import Joy
-from std_msgs.msg import String
+from std_msgs.msg import Int16MultiArray, String
 from std_srvs.srv import SetBool
 
 from ..planning.events import Event, event_of
 from ..ros.running import run
+from ..sensing import voice
 
 PUSH_TIME = 0.1  # s for which the simulator pushes
 _TASKS = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 _BEGUN = {TaskStatus.STATE_RUNNING}
 _ENDED = {TaskStatus.STATE_SUCCEEDED, TaskStatus.STATE_FAILED, TaskStatus.STATE_CANCELED}
+_SOUND = QoSProfile(depth=25, reliability=ReliabilityPolicy.BEST_EFFORT)
+_BLOCK = 0.02  # s of sound in a message
 _STICKS = 0.1  # s between messages of the joystick
 _HELD = [0, 0, 0, 0, 1]  # buttons: the dead man's is held
 _RELEASED = [0, 0, 0, 0, 0]
@@ -55,7 +61,8 @@ class Audience(Node):
         self._due = 0  # events whose time is set, but has not come
         self._push = self.create_publisher(WrenchStamped, "/humanoid_simulator/push", 10)
         self._move = self.create_publisher(ObstacleMotion, "/humanoid_simulator/move_obstacle", 10)
-        self._speech = self.create_publisher(String, "/speech/text", 10)
+        self._typed = self.create_publisher(String, "/speech/typed", 10)
+        self._microphone = self.create_publisher(Int16MultiArray, "/microphone/audio", _SOUND)
         self._joy = self.create_publisher(Joy, "/joy", _NEWEST)
         self._button = self.create_client(SetBool, "/emergency_stop/set")
         self.create_subscription(TaskStatus, "/high_level_task_manager/task", self._on_task, _TASKS)
@@ -103,12 +110,30 @@ class Audience(Node):
             case "press" | "release":
                 self._button.call_async(SetBool.Request(data=event.act == "press"))
             case "say":
-                self._speech.publish(String(data=event.words))
+                self._typed.publish(String(data=event.words))
+            case "speak":
+                self._speak(voice.say(event.words))
             case "joystick":
                 self._steer(*event.numbers)
             case "move":
                 x, y = event.numbers
                 self._move.publish(ObstacleMotion(name=event.words, position=Point(x=x, y=y)))
+
+    def _speak(self, sound: NDArray[np.int16]) -> None:
+        """Send sound to the microphone, block by block as time passes, and silence after it."""
+        self._due += 1
+        block, silence = round(_BLOCK * voice.RATE), np.zeros(voice.RATE, dtype=np.int16)
+        left = np.concatenate([sound, silence])
+
+        def send(start: int) -> None:
+            part = left[start : start + block]
+            self._microphone.publish(Int16MultiArray(data=array("h", part.tobytes())))
+            if start + block < len(left):
+                self._after(_BLOCK, lambda: send(start + block))
+            else:
+                self._due -= 1
+
+        send(0)
 
     def _steer(self, forward: float, left: float, turn: float, seconds: float) -> None:
         """Hold the sticks for a time, and let go."""

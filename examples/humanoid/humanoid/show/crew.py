@@ -52,6 +52,7 @@ GROUPS: dict[str, tuple[str, ...]] = {
         "emergency_stop",
         "battery_monitor",
         "motion_planner",
+        "speech_recognition",
         "footstep_planner",
         "footstep_generation_server",
         "navigation_action_server",
@@ -75,6 +76,7 @@ WITH_BODY = (
     "footstep_generation_server",
     "navigation_action_server",
     "dance_action_server",
+    "high_level_task_manager",
     "obstacle_mapper",
     "footstep_planner",
 )

@@ -58,6 +58,13 @@ class Score:
         errors = self.foot_errors
         return math.sqrt(sum(e * e for e in errors) / len(errors)) if errors else 0.0
 
+    def arrive(self, words: str, error: float) -> None:
+        """Note where a walk really ended, by its distance from the goal [m]: one far from it has failed."""
+        self.goal_errors.append(error)
+        if error > _ASTRAY:
+            where = f"it ended {error * 1e3:.0f} mm from its goal, more than {_ASTRAY * 1e3:.0f}"
+            self.failures.append(f"{words}: {where}")
+
 
 class Director(Node):
     """Keeps score; `say` is called with what happens, `is_quiet` tells whether nobody else has plans."""
@@ -158,10 +165,7 @@ class Director(Node):
             x, y, _ = messages.planar(message.goal)
             error = self.distance_to(float(x), float(y))
             if math.isfinite(error):
-                self.score.goal_errors.append(error)
-                if error > _ASTRAY:
-                    words = f"it ended {error * 1e3:.0f} mm from its goal, more than {_ASTRAY * 1e3:.0f}"
-                    self.score.failures.append(f"{message.words}: {words}")
+                self.score.arrive(message.words, error)
             self._say(f"arrived with {message.message}, {error * 1e3:.0f} mm off")
         elif kind == "dance":
             self.score.dances += 1

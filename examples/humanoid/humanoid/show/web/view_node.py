@@ -198,7 +198,7 @@ class WebView(Node):
         """Show the pictures of the head camera, which take time to draw, or no more."""
         if on and self._camera is None:
             if not self.get_publishers_info_by_topic(_CAMERA):
-                return False, f"nobody publishes {_CAMERA}"
+                return False, f"nobody publishes {_CAMERA}: start the demo with --camera"
             self._camera = self.create_subscription(Image, _CAMERA, self._on_picture, _LATEST)
         elif not on and self._camera is not None:
             self.destroy_subscription(self._camera)

@@ -1,0 +1,54 @@
+"""Walks between obstacles that the robot has to find with its camera."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from humanoid.simulation import rendering
+
+LIBRARY = str(Path(__file__).parents[2] / "examples/humanoid")
+# In a process of its own, whose rclpy is ours.
+PROGRAM = """
+import dataclasses, json, sys
+import ifgen
+sys.path.insert(0, sys.argv[1])
+ifgen.activate("local")
+from humanoid.trials.obstacle_trials import walks
+print(json.dumps([dataclasses.asdict(scene) for scene in walks(json.loads(sys.argv[2]))]))
+"""
+
+
+def walked(seeds: list[int]) -> list[dict[str, Any]]:
+    """The walks in the scenes of these seeds."""
+    try:
+        rendering.choose_gl()
+    except rendering.RenderingError as error:
+        pytest.skip(str(error))
+    command = [sys.executable, "-c", PROGRAM, LIBRARY, json.dumps(seeds)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=3000, check=False)
+    assert done.returncode == 0, done.stderr
+    scenes: list[dict[str, Any]] = json.loads(done.stdout.splitlines()[-1])
+    return scenes
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(600)
+def test_it_walks_round_obstacles_that_it_sees() -> None:
+    for scene in walked([0, 3]):
+        assert (scene["reached"], scene["falls"], scene["touches"]) == (True, 0, 0), scene
+        assert scene["obstacles"] == 5
+        assert scene["error"] < 0.06
+        assert scene["length"] > 4.0
+
+
+@pytest.mark.alone
+@pytest.mark.timeout(3000)
+def test_twenty_scenes() -> None:
+    scenes = walked(list(range(20)))
+    assert sum(scene["reached"] for scene in scenes) >= 19, scenes
+    assert [(scene["falls"], scene["touches"]) for scene in scenes] == [(0, 0)] * 20, scenes
