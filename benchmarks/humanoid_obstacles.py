@@ -2,8 +2,8 @@
 
 python benchmarks/humanoid_obstacles.py [--quick]     fewer scenes
 
-Five solid obstacles at random places, which differ by the seed, and a goal 4 m ahead, over the whole node graph
-in lockstep on the local transport. Times are simulated; lengths and errors are true ones.
+Five solid obstacles at random places, which differ by the seed, and a goal 4 m ahead, over the whole node
+graph in lockstep on the local transport. Times are simulated; lengths and errors are true ones.
 """
 
 from __future__ import annotations
