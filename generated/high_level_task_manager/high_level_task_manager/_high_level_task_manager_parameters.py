@@ -20,6 +20,17 @@ class ParametersError(Exception):
 class HighLevelTaskManagerParameters:
     """The parameters of the node high_level_task_manager."""
 
+    model_file: str
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours. It points from its own
+    shoulders
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     tasks: tuple[str, ...]
     """The first tasks, in words: `walk X Y YAW` [m], [m], [rad], `dance NAME`, `look X Y Z`, `point X Y Z`
     [m], `wait SECONDS`; they begin when the robot stands
@@ -72,6 +83,8 @@ def read_parameters(node: Node) -> HighLevelTaskManagerParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return HighLevelTaskManagerParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         tasks=values["tasks"],
         home=values["home"],
         goal_timeout=values["goal_timeout"],
@@ -110,6 +123,24 @@ def _problem(name: str, value: Any) -> str:
 # One line for each value and rule, however long it gets.
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
+        (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours. It points from its own shoulders",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
         (
             "tasks",
             Parameter.Type.STRING_ARRAY,

@@ -11,6 +11,7 @@ from humanoid.data import SECOND
 from humanoid.planning.pointing import hand_towards, in_footprint
 from humanoid.planning.task_manager import TaskManager
 from humanoid.planning.tasks import Task, task_of, words_of
+from humanoid.robot.body import load_body
 from humanoid.ros import messages
 from humanoid.ros.running import run
 from humanoid.simulation.battery import Level
@@ -38,6 +39,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
+        self._body = load_body(self.parameters.model_file, self.parameters.joint_map)
         self.manager = TaskManager(())
         self._battery = Level.NORMAL
         self._stopped = False
@@ -175,7 +177,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
             return False, str(answer.message)
         names, positions = list(answer.joints.name), list(answer.joints.position)
         if task.kind == "point":
-            chain, hand = hand_towards(target)
+            chain, hand = hand_towards(target, self._body)
             reach = await self.call_solve_ik(
                 SolveIK.Request(chain=chain, target=_at(hand), position_only=True, seed=answer.joints),
                 timeout_sec=_ANSWER,

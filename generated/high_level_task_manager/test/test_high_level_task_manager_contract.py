@@ -814,6 +814,24 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "model_file",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="A humanoid of your own as MJCF, the same for all nodes; empty for ours. It points from its own shoulders",
+        read_only=True,
+    ),
+    ParameterCase(
+        "joint_map",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+        read_only=True,
+    ),
+    ParameterCase(
         "tasks",
         Parameter.Type.STRING_ARRAY,
         [],

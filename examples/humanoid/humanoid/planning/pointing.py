@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..robot.body import OURS, Body
 from ..spatial import Array, rotation_z
 
-_SHOULDER = (0.0, 0.16, 1.05)  # the left one, above the middle between the soles [m]
+_ASIDE, _ABOVE_LEGS = 0.16, 0.39  # where the left shoulder is: to the left, and above straight legs [m]
 _REACH = 0.40  # m from the shoulder to the hand: an arm that is nearly straight points
 
 Point = tuple[float, float, float]
@@ -19,10 +20,10 @@ def in_footprint(centre: Array, point: Point) -> Point:
     return x, y, z
 
 
-def hand_towards(point: Point) -> tuple[str, Point]:
+def hand_towards(point: Point, body: Body = OURS) -> tuple[str, Point]:
     """The chain of the nearer arm, and where its hand points at a point; both in base_footprint."""
     side = 1 if point[1] >= 0 else -1
-    shoulder = np.array([_SHOULDER[0], side * _SHOULDER[1], _SHOULDER[2]])
+    shoulder = np.array([0.0, side * _ASIDE, body.leg_length + _ABOVE_LEGS])
     away = np.array(point) - shoulder
     x, y, z = (shoulder + away * (_REACH / max(float(np.linalg.norm(away)), _REACH))).tolist()
     return ("left_arm" if side > 0 else "right_arm"), (x, y, z)

@@ -2,7 +2,7 @@
 
 Joints have our names, as in joint states; links have the names of the bodies, but for base_link. Capsules
 and ellipsoids look like cylinders and spheres, and collide so. Meshes have no file that a URDF could name:
-each is the box around it, and a comment says so.
+a body of meshes looks like what collides in their place, or like the boxes around them; a comment says so.
 """
 
 from __future__ import annotations
@@ -135,7 +135,9 @@ class _Description:
             xx, yy, zz = map(float, mj.body_inertia[body])
             add(inertial, "inertia", ixx=xx, ixy=0.0, ixz=0.0, iyy=yy, iyz=0.0, izz=zz)
         geoms = [geom for geom in range(mj.ngeom) if mj.geom_bodyid[geom] == body]
-        shown = [geom for geom in geoms if mj.geom_group[geom] < _HIDDEN] or geoms
+        simple = [geom for geom in geoms if mj.geom_type[geom] != mujoco.mjtGeom.mjGEOM_MESH]
+        # A body of meshes looks like what collides in their place, if there is something.
+        shown = [geom for geom in simple if mj.geom_group[geom] < _HIDDEN] or simple or geoms
         for geom in geoms:
             shape, place = self._shape(geom)
             place = back.then(place)

@@ -76,6 +76,7 @@ WITH_BODY = (
     "footstep_generation_server",
     "navigation_action_server",
     "dance_action_server",
+    "high_level_task_manager",
     "obstacle_mapper",
     "footstep_planner",
 )

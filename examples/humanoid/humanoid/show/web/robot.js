@@ -73,16 +73,18 @@ export class Robot extends THREE.Group {
       links.get(element.querySelector("parent").getAttribute("link")).add(fixed);
       roots.delete(child);
       const axis = new THREE.Vector3(...numbers(element.querySelector("axis")?.getAttribute("xyz"), "1 0 0"));
-      this.joints.set(element.getAttribute("name"), { link: links.get(child), axis });
+      const slides = element.getAttribute("type") === "prismatic";
+      this.joints.set(element.getAttribute("name"), { link: links.get(child), axis, slides });
     }
     for (const root of roots) this.add(links.get(root));
   }
 
-  // Angles by joint, in radians.
+  // Positions by joint, in radians or metres.
   pose(angles) {
     for (const [name, angle] of Object.entries(angles)) {
       const joint = this.joints.get(name);
-      joint?.link.quaternion.setFromAxisAngle(joint.axis, angle);
+      if (joint?.slides) joint.link.position.copy(joint.axis).multiplyScalar(angle);
+      else joint?.link.quaternion.setFromAxisAngle(joint.axis, angle);
     }
   }
 
