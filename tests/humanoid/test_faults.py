@@ -24,7 +24,9 @@ from humanoid.planning.footsteps import plan_footsteps
 from humanoid.robot.model import HumanoidModel
 from humanoid.simulation.safety import LATEST, MISSING_AFTER, CommandGate, EmergencyStopLatch
 from humanoid.simulation.sim import Noise
+from humanoid.spatial import Array
 from humanoid.trials.harness import Lockstep
+from humanoid.trials.trials import STRAIGHT
 
 NOISE = Noise()
 
@@ -121,6 +123,25 @@ def test_a_late_joiner_hears_of_the_stop(model: HumanoidModel) -> None:
     steps = straight_steps(4, 0.1, 0.18)
     assert "3 % left" in controller.follow(FootstepPlan(1, steps, (0.3, 0.0, 0.0)))
     assert controller.mode is Mode.EMERGENCY_STOP
+
+
+@pytest.mark.parametrize("when", [1.7, 2.0, 2.5])
+def test_a_hasty_landing_does_not_lose_the_robot(model: HumanoidModel, when: float) -> None:
+    """Feet hover and slide until the weight comes onto them."""
+    robot = Lockstep(model, seed=0, noise=Noise())
+    robot.run(0.5)
+    robot.controller.follow(STRAIGHT)
+    robot.run(when + 0.5)
+
+    def lost() -> Array:
+        assert robot.odometry is not None
+        return (robot.odometry.position - robot.simulator.truth().position)[:2]
+
+    before = lost()
+    robot.controller.emergency_stop(EmergencyStop(True, Cause.OPERATOR, "/teleop", "red button"))
+    robot.run(2.0)
+    assert not robot.fell
+    assert np.linalg.norm(lost() - before) < 0.010
 
 
 def test_the_latch_is_lifted_by_nobody_who_still_asks() -> None:

