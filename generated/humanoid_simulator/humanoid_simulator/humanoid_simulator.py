@@ -11,7 +11,6 @@ from geometry_msgs.msg import TransformStamped, WrenchStamped
 from humanoid import data
 from humanoid.control.posture import start
 from humanoid.robot import table
-from humanoid.robot.body import OURS
 from humanoid.robot.description import describe_robot
 from humanoid.robot.external import load_model
 from humanoid.robot.obstacles import Solid, random_solids, solids_of
@@ -67,7 +66,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._losses = generator(self.parameters.seed, "camera")
         self._begin()
         self.publish_robot_description(
-            String(data=write_urdf() if self._model.body is OURS else describe_robot(self._model))
+            String(data=describe_robot(self._model) if self.parameters.model_file else write_urdf())
         )
         self.publish_tf_static(TFMessage(transforms=[_identity("map", "odom")]))
 

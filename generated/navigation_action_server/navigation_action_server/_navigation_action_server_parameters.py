@@ -77,7 +77,8 @@ class NavigationActionServerParameters:
     Must be from 0.0 to 3600.0.
     """
     service_timeout: float
-    """How long to wait for a path, and for footsteps [s]
+    """How long to wait for a path, and for footsteps along it, for which footstep_planner asks another
+    node [s]
 
     Must be from 0.05 to 10.0.
     """
@@ -252,9 +253,9 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "service_timeout",
             Parameter.Type.DOUBLE,
-            1.0,
+            2.5,
             ParameterDescriptor(
-                description="How long to wait for a path, and for footsteps [s]",
+                description="How long to wait for a path, and for footsteps along it, for which footstep_planner asks another node [s]",
                 additional_constraints="must be from 0.05 to 10.0",
                 floating_point_range=[FloatingPointRange(from_value=0.05, to_value=10.0)],
             ),

@@ -862,10 +862,10 @@ PARAMETERS = [
     ParameterCase(
         "service_timeout",
         Parameter.Type.DOUBLE,
-        1.0,
-        [1.0, 0.05, 10.0, 5.025, 0.051, 9.8],
+        2.5,
+        [2.5, 0.05, 10.0, 5.025, 0.051, 9.8],
         [0.049, 10.2],
-        description="How long to wait for a path, and for footsteps [s]",
+        description="How long to wait for a path, and for footsteps along it, for which footstep_planner asks another node [s]",
         range=(0.05, 10.0),
     ),
 ]

@@ -32,6 +32,8 @@ PROCESSES = (
     ("whole_body_controller",),
     ("joint_controller",),
     ("gait_planner",),
+    ("motion_planner",),
+    ("footstep_planner",),
     ("footstep_generation_server",),
     ("navigation_action_server",),
 )

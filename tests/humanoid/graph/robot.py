@@ -30,7 +30,8 @@ MOTION = (
     "joint_controller",
     "gait_planner",
 )
-WALKING = (*MOTION, "footstep_generation_server", "navigation_action_server")
+PLANNING = ("motion_planner", "footstep_planner", "footstep_generation_server")
+WALKING = (*MOTION, *PLANNING, "navigation_action_server")
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _REAL_TIME = 90.0  # s: the limit of every wait
 _SIMULATOR = {"noise": True, "seed": 1, "lockstep": True, "patience": 0.5}

@@ -128,7 +128,7 @@ def test_no_bad_reading_plan_posture_velocity_or_push_does_harm(make_robot: Make
             robot.run(0.02)
     status, _ = robot.result(goal)
     assert status == GoalStatus.STATUS_SUCCEEDED
-    assert np.hypot(*robot.physics.sole_truth().centre[:2] - [0.6, 0.0]) < 0.06
+    assert np.hypot(*robot.physics.sole_truth().centre[:2] - [1.2, 0.0]) < 0.06
     assert not robot.fell
     assert np.isfinite(robot.setpoints).all()
     robot.run(1.0)

@@ -17,7 +17,7 @@ from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import Stance
 from humanoid_interfaces.srv import PlanFootsteps, SolveIK
 
-from tests.humanoid.graph.robot import MOTION, WALKING, Robot, walk
+from tests.humanoid.graph.robot import MOTION, PLANNING, WALKING, Robot, walk
 
 MakeRobot = Callable[..., Robot]
 NAN = math.nan
@@ -31,7 +31,7 @@ def standing(make_robot: MakeRobot, *names: str, **parameters: Any) -> Robot:
 
 
 def test_walks_that_cannot_be_walked_are_rejected_with_the_reason(make_robot: MakeRobot) -> None:
-    robot = make_robot("navigation_action_server", "footstep_generation_server", "humanoid_simulator")
+    robot = make_robot("navigation_action_server", *PLANNING, "humanoid_simulator")
     assert not robot.send(walk(0.3)).accepted
     robot.expect(
         "navigation_action_server", "rejected: the controller has not reported yet where the feet are"

@@ -18,22 +18,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
+import numpy as np
 
-from . import table
 from .adapting import Adapter
+from .body import OURS, STRAIGHT_HEIGHT
 from .joint_map import JointMap, ModelError, read_map
-from .model import HumanoidModel, Names, describe, load
+from .model import SOLE, HumanoidModel, Names, describe, load
 from .obstacles import Solid, add_solids
 from .walkable import check_parts, check_walkable
 
-_ALIGNED = 1e-3  # tolerance of the axes: metres, and sine of the angle
-_GRAVITY_OFF = 0.2  # m/s2: it varies by less than this from place to place on earth
+_MEASURED = 1e-4  # metres and radians: how exactly a body can be measured
 _UNREADABLE = re.compile(r"XML parse error (\d+).*Error=XML_(?:ERROR_)?(\w+).*Line number=(\d+)", re.DOTALL)
-_LINK = {frame.name: frame for frame in table.FRAMES}
-_JOINT = {link.name: link.joint.name for link in table.LINKS if link.joint is not None}
 
 
 def load_model(model_file: str = "", joint_map: str = "", solids: Sequence[Solid] = ()) -> HumanoidModel:
@@ -57,7 +56,25 @@ def load_external(path: Path, joint_map: Path | None = None, solids: Sequence[So
     check_parts(path, mj, names.base, adapter.joints)
     model = describe(mj, Names(adapter.joints, names.base, adapter.torso), adapter.sole)
     check_walkable(path, model, adapter.joints)
-    return model
+    # A body of our size is ours to the last digit, so that our robot moves alike from whatever file it comes.
+    return replace(model, body=OURS, sole=SOLE) if _is_our_size(model) else model
+
+
+def _is_our_size(model: HumanoidModel) -> bool:
+    """Whether a robot has our joints and our measures, as exactly as these can be measured."""
+    body = model.body
+    if body.joints != OURS.joints or not model.has_our_legs:
+        return False
+    sole = (model.sole.centre - SOLE.centre, *np.subtract(body.foot, OURS.foot))
+    off = (
+        body.leg_length - OURS.leg_length,
+        body.stance_width - OURS.stance_width,
+        model.straight_height - STRAIGHT_HEIGHT,
+        *sole,
+        *(body.lower - OURS.lower),
+        *(body.upper - OURS.upper),
+    )
+    return bool(np.abs(off).max() < _MEASURED)
 
 
 def _parse(path: Path) -> mujoco.MjSpec:
