@@ -46,14 +46,14 @@ def test_a_wall_is_walked_round() -> None:
 @pytest.mark.parametrize(
     ("goal", "points", "status", "why"),
     [
-        ((1.4, 0.3), WALL, RouteStatus.GOAL_OCCUPIED, "is 0.10 m from an obstacle; I keep 0.37 m"),
+        ((1.4, 0.3), WALL, RouteStatus.GOAL_OCCUPIED, "is 0.10 m from an obstacle; I keep 0.4 m"),
         ((math.nan, 0.3), WALL, RouteStatus.INVALID_REQUEST, "not finite"),
         ((3.0, 0.0), np.array([[0.1, 0.0]]), RouteStatus.BLOCKED, "where the robot stands"),
         (
             (3.0, 0.0),
             disc_points(Obstacle("ring", 0.0, 0.0, 1.0))[:24],
             RouteStatus.BLOCKED,
-            "no way of 0.74 m width leads to (3.00, 0.00)",
+            "no way of 0.80 m width leads to (3.00, 0.00)",
         ),
     ],
 )
@@ -100,7 +100,7 @@ def test_steps_along_random_routes_keep_away_and_are_steps_that_legs_can_take() 
             assert abs(wrap(step.yaw - feet[step.leg.other.side][2])) < 0.4
             feet[step.leg.side] = step.pose
         assert blocked_step(steps, points, HERE.centre, LIMITS) == ""
-        assert min(nearest(points, body_of(step, LIMITS)[None, :2])[0] for step in steps) > 0.30
+        assert min(nearest(points, body_of(step, LIMITS)[None, :2])[0] for step in steps) > 0.32
         walked += 1
     assert walked >= 11
 

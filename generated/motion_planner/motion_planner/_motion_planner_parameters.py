@@ -109,7 +109,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
         (
             "clearance",
             Parameter.Type.DOUBLE,
-            0.37,
+            0.4,
             ParameterDescriptor(
                 description="From the middle of the body to an obstacle, half the robot's width included [m]",
                 additional_constraints="must be from 0.2 to 2.0",

@@ -421,8 +421,8 @@ PARAMETERS = [
     ParameterCase(
         "clearance",
         Parameter.Type.DOUBLE,
-        0.37,
-        [0.37, 0.2, 2.0, 1.1, 0.204, 1.96],
+        0.4,
+        [0.4, 0.2, 2.0, 1.1, 0.204, 1.96],
         [0.196, 2.04],
         description="From the middle of the body to an obstacle, half the robot's width included [m]",
         range=(0.2, 2.0),

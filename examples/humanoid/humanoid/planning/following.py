@@ -16,7 +16,7 @@ from .footsteps import StepLimits, advance, beside, footstep
 AHEAD = 0.30
 """How far ahead of the body the point is that it walks to, at least [m]; a long step looks farther."""
 
-NEAREST = 0.30
+NEAREST = 0.32
 """No step takes the body nearer to an obstacle than this [m], unless it leads away from it."""
 
 _TURN = 0.7  # rad beside the way from which the body only turns; the nearer to it, the shorter its steps

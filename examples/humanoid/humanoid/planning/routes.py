@@ -21,7 +21,7 @@ from ..spatial import Array
 
 Place = tuple[float, float]
 
-CLEARANCE = 0.37
+CLEARANCE = 0.40
 """From the middle of the body to what is on the floor [m]: its half width, swaying, and errors of the map."""
 
 _CELL = 0.10  # m

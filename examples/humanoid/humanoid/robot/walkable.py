@@ -19,11 +19,12 @@ _GRAVITY_OFF = 0.2  # m/s2: it varies by less than this from place to place on e
 _SHORTEST_LEG, _UNEQUAL = 0.35, 0.01  # metres
 _SHORTEST_SOLE, _NARROWEST_SOLE = 0.12, 0.05  # metres
 _STANCES = (0.12, 0.36)  # metres between the soles
-# What carrying the robot on one leg with a bent knee takes of a joint: the weight, times a lever arm. The
-# arms are shares of the leg's length, of the distance between the soles, and of half a sole.
-_LEG_ARMS = {"knee": 0.2, "hip_pitch": 0.1}
-_STANCE_ARMS = {"hip_roll": 0.5}
-_SOLE_ARM = {"ankle_pitch": 0.6, "ankle_roll": 0.5}
+# What walking takes of a joint: the weight, times a lever arm. The arms are shares of the leg's length, of
+# the distance between the soles, and of half a sole. 99 of 100 moments of a walk at 0.5 m/s take less, on our
+# legs as on shorter ones and on those with offset hips.
+_LEG_ARMS = {"knee": 0.32, "hip_pitch": 0.14}
+_STANCE_ARMS = {"hip_roll": 0.6}
+_SOLE_ARM = {"ankle_pitch": 1.0, "ankle_roll": 0.4}
 
 
 def check_parts(path: Path, mj: mujoco.MjModel, base_name: str, joints: dict[str, str]) -> None:
@@ -122,8 +123,8 @@ def _check_strength(path: Path, model: HumanoidModel, joints: dict[str, str]) ->
         needed = weight * arms.get(name[2:], 0.0)
         if model.effort[number] < needed:
             raise ModelError(
-                f"{path}: joint '{joints[name]}' has {model.effort[number]:.3g} N m; carrying "
-                f"{model.mass:.3g} kg on one leg takes {needed:.2g} N m there"
+                f"{path}: joint '{joints[name]}' has {model.effort[number]:.3g} N m; walking "
+                f"with {model.mass:.3g} kg takes {needed:.2g} N m there"
             )
 
 

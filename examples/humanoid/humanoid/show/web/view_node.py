@@ -70,7 +70,7 @@ class WebView(Node):
         self._lines: deque[list[Any]] = deque(maxlen=_LINES)
         self._line = 0
         self._warned: dict[str, str] = {}
-        self._simulated = 0.0
+        self._simulated: float | None = None  # not known until the clock is heard
         self._rates = Rates()
         self._seen = time.monotonic()  # when somebody last watched
         self._looked = 0.0
@@ -130,6 +130,7 @@ class WebView(Node):
         for topic in self._heard.values():
             self.destroy_subscription(topic.subscription)
         self._heard.clear()
+        self._simulated = None
         self._rates = Rates()
         self._set_camera(False)
 
@@ -183,7 +184,8 @@ class WebView(Node):
             if topic not in self._heard and (kind := _message_class(types[0])) is not None:
                 self._subscribe(topic, kind, _LATEST)
         counts = {name: topic.messages for name, topic in self._heard.items()}
-        self._rates.count(now, self._simulated, counts)
+        if self._simulated is not None:
+            self._rates.count(now, self._simulated, counts)
         self.page.show("factor", round(self._rates.factor, 2))
         graph = of_running(self)
         self.page.show("graph", _drawing(graph))
