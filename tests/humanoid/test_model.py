@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
+import pytest
 from humanoid.robot import table
 from humanoid.robot.mjcf import write_mjcf
 from humanoid.robot.model import HumanoidModel
@@ -121,3 +122,20 @@ def test_rotations_come_back() -> None:
     roll, pitch, yaw = 0.3, -0.4, 2.0
     x = rotation_rpy(roll, pitch, yaw) @ np.array([1.0, 0.0, 0.0])
     assert np.allclose(x, (np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), -np.sin(pitch)))
+
+
+@pytest.mark.parametrize(
+    ("moved", "touching"),
+    [
+        ({}, set()),
+        ({"l_shoulder_yaw": -1.5, "l_elbow": -2.0}, {"l_wrist", "torso"}),
+        ({"l_hip_roll": -0.3, "r_hip_roll": 0.3}, {"l_shin", "r_shin"}),
+    ],
+)
+def test_links_touch_each_other(model: HumanoidModel, moved: dict[str, float], touching: set[str]) -> None:
+    data = model.data()
+    for name, position in moved.items():
+        data.qpos[model.qpos[model.body.index(name)]] = position
+    mujoco.mj_forward(model.mj, data)
+    found = [{model.mj.body(model.mj.geom_bodyid[geom]).name for geom in each.geom} for each in data.contact]
+    assert touching in found if touching else found == []

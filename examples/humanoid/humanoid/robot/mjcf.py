@@ -16,6 +16,13 @@ from .xmltext import add, document
 STANDING_HEIGHT = 0.80  # of base_link when the simulation starts: slightly above standing
 TIMESTEP = 0.002  # of the simulation, seconds
 
+# Who touches whom, as bits of MuJoCo's contype and conaffinity. Links of one limb overlap where they are
+# joined, and do not touch each other.
+_WORLD, _TRUNK = 1, 2
+_LEGS = {"l": 4, "r": 8}
+_FOREARMS = {"l": 16, "r": 32}
+_FOREARM = {"forearm", "wrist_roll_link", "wrist"}
+_UPPER_ARM = {"shoulder_pitch_link", "shoulder_roll_link", "upper_arm"}
 _FRICTION = "1.0 0.02 0.001"
 
 
@@ -26,7 +33,7 @@ def write_mjcf(timestep: float = TIMESTEP) -> str:
     add(root, "option", timestep=timestep, integrator="implicitfast", cone="pyramidal")
     default = add(root, "default")
     add(default, "joint", damping=0.3, frictionloss=0.05)
-    add(default, "geom", contype=0, conaffinity=1, friction=_FRICTION)  # touches only the floor
+    add(default, "geom", contype=0, conaffinity=_WORLD, friction=_FRICTION)
     world = add_scene(root)
     bodies = {"": world}
     actuator = ElementTree.Element("actuator")
@@ -40,6 +47,20 @@ def write_mjcf(timestep: float = TIMESTEP) -> str:
     root.append(actuator)
     _sensors(root)
     return document(root)
+
+
+def _touches(link: str) -> dict[str, int]:
+    """The bits of a link."""
+    both_forearms = sum(_FOREARMS.values())
+    side, _, part = link.partition("_")
+    if side not in _LEGS:
+        return {"contype": _TRUNK, "conaffinity": _WORLD | both_forearms}
+    other = "r" if side == "l" else "l"
+    if part in _FOREARM:
+        return {"contype": _FOREARMS[side], "conaffinity": _WORLD | _FOREARMS[other]}
+    if part in _UPPER_ARM:
+        return {"contype": 0, "conaffinity": _WORLD | _FOREARMS[other]}
+    return {"contype": _LEGS[side], "conaffinity": _WORLD | _LEGS[other] | both_forearms}
 
 
 def _body(parent: ElementTree.Element, link: table.Link) -> ElementTree.Element:
@@ -57,6 +78,7 @@ def _body(parent: ElementTree.Element, link: table.Link) -> ElementTree.Element:
             pos=shape.position,
             mass=shape.mass,
             rgba=(*shape.colour, 1),
+            **_touches(link.name),
         )
         if shape.name:
             geom.set("name", shape.name)

@@ -67,7 +67,9 @@ class NodeGraph:
         _, *others = chain.from_iterable(crew.members(group, with_extra=sees) for group in crew.GROUPS)
         nodes = crew.make(others, {"camera_driver": {"streaming": sees}})
         # Made last, so that all nodes receive its first readings and need not wait until it repeats them.
-        first = make_simulator(seed=seed, noise=noise, obstacles=[words_of(solid) for solid in solids])
+        # An empty list has no type that a parameter could have.
+        obstacles = {"obstacles": [words_of(solid) for solid in solids]} if solids else {}
+        first = make_simulator(seed=seed, noise=noise, **obstacles)
         self.nodes = [first, *nodes, self.user]
         for node in self.nodes:
             self.executor.add_node(node)
