@@ -29,6 +29,7 @@ _AROUND = 3  # cells around an occupied one that may hold the same obstacle
 _LEVEL = 0.1  # share of a ray that must be ahead
 _WIDTH, _HEIGHT, _FOCAL, _HORIZON = 200, 145, 91.0, 9.0  # of the levelled picture, in pixels
 _MOST, _OCCUPIED = 100.0, 20.0
+_NEARER = 0.35  # m: how much nearer an obstacle may be than the edge of the picture that cuts it
 _DEPTHS = (0.15, 0.35)  # m: least and most that an obstacle is taken to be deep
 
 
@@ -118,6 +119,7 @@ class FloorMap:
         # does not know it yet.
         cut = ~seen[np.minimum(rows + 1, lens.height - 1), columns]
         points[cut] = np.where(self._is_between(foot, points[cut])[:, None], np.nan, points[cut])
+        behind += self._before(foot, points[cut])
         for group in _groups(columns, points):
             away = group - foot
             distance = np.hypot(away[:, 0], away[:, 1])
@@ -131,6 +133,13 @@ class FloorMap:
             direction = away[close] / distance[close][:, None]
             behind += [group[close] + direction * depth for depth in depths]
         return self._cells(_joined(near)), self._cells(_joined(far)), self._cells(_joined(behind))
+
+    def _before(self, foot: Array, points: Array) -> list[Array]:
+        """Places nearer than points (n, 2) where an obstacle may begin whose lower edge is not seen."""
+        away = points[np.isfinite(points).all(axis=1)] - foot
+        distance = np.hypot(away[:, 0], away[:, 1])[:, None]
+        steps = np.arange(self._resolution, _NEARER, self._resolution)
+        return [foot + away * (1.0 - np.minimum(step / distance, 0.5)) for step in steps] if len(away) else []
 
     def _known(self) -> Mask:
         """The occupied cells and those around them."""
