@@ -259,7 +259,7 @@ def test_a_push_to_the_outside_hurries_the_swing(model: HumanoidModel) -> None:
         robot = Lockstep(model, seed=1, noise=NOISE)
         robot.run(0.5)
         robot.controller.follow(STRAIGHT)
-        robot.run(1.2 + 1.4 + 0.25)  # the right leg swings
+        robot.run(1.2 + 1.4 + 0.1)  # the right leg swings
         push(robot, 90.0, momentum)
         began = robot.simulator.stamp
         while len(robot.touchdowns) < 3 and not robot.fell:
