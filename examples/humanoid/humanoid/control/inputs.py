@@ -6,15 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..data import SECOND, FootWrench, GaitState, Imu, JointStates, Odometry
+from ..data import SECOND, FootWrench, GaitState, Imu, JointStates, Odometry, Support
 from ..kinematics.dynamics import RobotState
-from ..robot.model import HumanoidModel
+from ..robot.model import GRAVITY, HumanoidModel
 from ..sensing.estimator import StateEstimator
 from ..spatial import matrix_of
 from .plausible import NOT_FINITE, imu_problem, joints_problem, odometry_problem
 
 LATE = 50_000_000  # ns: an older reading counts as missing unless the caller sets another age
 LEASE = 100_000_000  # ns that a sign of life is valid: at 50 Hz four may get lost
+_LEFT_SHARE = {Support.LEFT: 1.0, Support.RIGHT: 0.0}  # of the weight on the left foot
 _JUMP = 0.05  # m between two consecutive positions of the base
 
 
@@ -105,8 +106,11 @@ class Inputs:
             position = last.position + moved
             state.set_posture(position, imu.orientation, joints.position)
             self._own.restart([state.sole(side)[0] for side in (0, 1)])
-        silent = FootWrench(joints.stamp, np.zeros(3), np.zeros(3))
-        return self._own.update(joints, imu, (silent, silent), gait)
+        # The controller hears no wrenches: the feet that stand by its plan carry the robot.
+        share = _LEFT_SHARE.get(gait.stance.support, 0.5)
+        weight = np.array([0.0, 0.0, self._model.mass * GRAVITY])
+        left, right = (FootWrench(joints.stamp, part * weight, np.zeros(3)) for part in (share, 1 - share))
+        return self._own.update(joints, imu, (left, right), gait)
 
     def odometry_problem(self, odometry: Odometry) -> str:
         """The reason to refuse odometry, or ""; it must continue from where it was."""
