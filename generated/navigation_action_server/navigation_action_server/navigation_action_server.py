@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from humanoid import data
@@ -177,6 +178,8 @@ class NavigationActionServer(NavigationActionServerBase):
         if goal.target.header.frame_id not in _FRAMES:
             return f"the goal is in '{goal.target.header.frame_id}'; I walk in odom"
         x, y, yaw = (float(part) for part in messages.planar(goal.target.pose))
+        if not all(map(math.isfinite, (x, y, yaw))):
+            return "the goal holds a number that is not finite"
         ways = _Ways(self, (x, y, yaw), goal.max_step_length)
         answer = await ways.ask(self._gait.stance, None, self._gait.footstep_index)
         return "" if answer.status in _PLANNED else answer.message

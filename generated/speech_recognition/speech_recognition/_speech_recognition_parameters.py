@@ -20,11 +20,6 @@ class ParametersError(Exception):
 class SpeechRecognitionParameters:
     """The parameters of the node speech_recognition."""
 
-    language: str
-    """Language that is listened for (BCP 47)
-
-    Must be one of "en-GB", "en-US".
-    """
     sample_rate: int
     """Samples a second in the sound [Hz]
 
@@ -74,7 +69,6 @@ def read_parameters(node: Node) -> SpeechRecognitionParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return SpeechRecognitionParameters(
-        language=values["language"],
         sample_rate=values["sample_rate"],
         hot_word=values["hot_word"],
         silence_time=values["silence_time"],
@@ -113,15 +107,6 @@ def _problem(name: str, value: Any) -> str:
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
         (
-            "language",
-            Parameter.Type.STRING,
-            "en-GB",
-            ParameterDescriptor(
-                description="Language that is listened for (BCP 47)",
-                additional_constraints='must be one of "en-GB", "en-US"',
-            ),
-        ),
-        (
             "sample_rate",
             Parameter.Type.INTEGER,
             16000,
@@ -154,9 +139,6 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
 
 
 _RULES: dict[str, tuple[tuple[Callable[[Any], bool], str], ...]] = {
-    "language": (
-        (lambda value: value in ["en-GB", "en-US"], 'must be one of "en-GB", "en-US"'),
-    ),
     "sample_rate": (
         (lambda value: value in [16000, 48000], "must be one of 16000, 48000"),
     ),

@@ -392,14 +392,6 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
-        "language",
-        Parameter.Type.STRING,
-        "en-GB",
-        ["en-GB", "en-US"],
-        ["xxxxx"],
-        description="Language that is listened for (BCP 47)",
-    ),
-    ParameterCase(
         "sample_rate",
         Parameter.Type.INTEGER,
         16000,
