@@ -1,4 +1,4 @@
-"""Nodes that die while the robot walks: it stands within a second and a half, some node says why, and a node may return."""
+"""Nodes that die while the robot walks: it stands within two seconds, some node says why, and a node may return."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.humanoid.graph.robot import MOTION, WALKING, Robot, walk
 
 MakeRobot = Callable[..., Robot]
 ON_THE_GROUND = 0.008  # m
-SAFE_WITHIN = 1.5  # s, where one more step must catch a fast walk
+SAFE_WITHIN = 2.0  # s, where one more step must catch a fast walk
 
 
 def walking(make_robot: MakeRobot, seconds: float, *more: str, **parameters: Any) -> tuple[Robot, Any]:
