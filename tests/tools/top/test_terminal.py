@@ -39,13 +39,13 @@ class Screen:
             "ROS_DOMAIN_ID": str(domain),
             "TTY": os.ttyname(self.theirs),
         }
-        self.process = subprocess.Popen(  # noqa: PLW1509  # it only sets a signal, which takes no lock
+        self.process = subprocess.Popen(
             # The one that a leader of a session opens becomes its own, so that Ctrl-C is for it.
             ["sh", "-c", 'exec "$@" <$TTY >$TTY 2>&1', "sh", *TOP, *words],
             env={**os.environ, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", **variables},
             start_new_session=True,
-            # Whoever started the tests may ignore it, as nohup does.
-            preexec_fn=partial(signal.signal, signal.SIGHUP, signal.SIG_DFL),
+            # Whoever started the tests may ignore it, as nohup does. To set a signal takes no lock.
+            preexec_fn=partial(signal.signal, signal.SIGHUP, signal.SIG_DFL),  # noqa: PLW1509
         )
 
     def resize(self, width: int, height: int) -> None:
