@@ -111,4 +111,4 @@ def test_a_process_is_killed_on_real_rclpy(node: str, words: str) -> None:
     if node == "navigation_action_server":  # the balance is fine: the walk ends normally
         assert seen["mode"] in {MODE_STANDING, MODE_STOPPING}
     else:
-        assert seen["down_after"] <= 0.5
+        assert seen["down_after"] <= 2.0  # a fast walk takes one more step
