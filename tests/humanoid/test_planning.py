@@ -18,10 +18,11 @@ from humanoid.planning.footsteps import (
     plan_footsteps,
     shorter,
 )
-from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome
+from humanoid.planning.navigation import Navigation
 from humanoid.planning.task_manager import TaskManager
 from humanoid.planning.tasks import Task, task_of, words_of
 from humanoid.planning.teleop import Teleop, VelocityLimits
+from humanoid.planning.walks import GoalTolerance, Outcome
 from humanoid.robot.body import OURS
 from humanoid.robot.ground import Ground, Obstacle
 from humanoid.robot.model import HumanoidModel

@@ -6,11 +6,11 @@ from typing import Any
 
 from humanoid import data
 from humanoid.planning.dance import Dance, DanceFeedback, problem
-from humanoid.planning.navigation import halted
+from humanoid.planning.walks import halted
 from humanoid.robot.body import load_body
 from humanoid.ros import messages
+from humanoid.ros.latest import LatestJoints
 from humanoid.ros.news import News
-from humanoid.ros.recent import LatestJoints
 from humanoid.ros.running import run
 from humanoid_interfaces.action import PerformDance
 from humanoid_interfaces.msg import EmergencyStop, GaitState

@@ -14,7 +14,7 @@ from humanoid.kinematics.head import HeadPose
 from humanoid.kinematics.ik import IkRequest, IkResult, IkStatus, InverseKinematics
 from humanoid.robot.external import load_model
 from humanoid.ros import messages
-from humanoid.ros.recent import LatestJoints
+from humanoid.ros.latest import LatestJoints
 from humanoid.ros.running import run
 from humanoid.spatial import Array
 from humanoid_interfaces.srv import CheckHeadPose, SolveIK

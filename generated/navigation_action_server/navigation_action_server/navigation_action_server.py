@@ -9,7 +9,8 @@ from humanoid import data
 from humanoid.control.pace import Pace
 from humanoid.planning.following import blocked_step
 from humanoid.planning.footsteps import PlanResult, PlanStatus, StepLimits, fitted, shorter
-from humanoid.planning.navigation import GoalTolerance, Navigation, Outcome, WalkResult, WalkTick, halted
+from humanoid.planning.navigation import Navigation
+from humanoid.planning.walks import GoalTolerance, Outcome, WalkResult, WalkTick, halted
 from humanoid.robot.body import load_body
 from humanoid.robot.scene import GROUND
 from humanoid.ros import messages

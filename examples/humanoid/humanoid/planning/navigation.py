@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from enum import IntEnum
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,10 +12,10 @@ from ..data import SECOND, STOP_CALLED, Footstep, FootstepPlan, GaitState, Leg, 
 from ..robot.ground import Ground
 from ..spatial import Array, wrap
 from .footsteps import PlanResult, PlanStatus, StepLimits, plan_footsteps
+from .walks import STOPPED, GoalTolerance, Outcome, WalkFeedback, WalkResult, WalkTick, halted
 
 _MOST_ROUNDS = 3  # plans that are made after the robot has come to a stand outside the tolerance
 _SWINGING = {Support.LEFT: Leg.RIGHT, Support.RIGHT: Leg.LEFT}
-_STOPPED = {Mode.HOLDING, Mode.EMERGENCY_STOP}
 _PATIENCE = 2 * SECOND  # ns within which the robot must begin to walk a plan
 _RETRY = SECOND  # ns between two attempts to find a way that is free
 _MOST_RECOVERIES = 20  # a robot that holds more often than that in a walk has a lasting problem
@@ -26,65 +24,6 @@ _NOT_BEGUN = "nobody walks the plan: gait_planner is silent, or the plan was ref
 
 Planner = Callable[[Stance, Leg | None, int], PlanResult | None]
 """Plans from a stance, with the leg and the index of the first step; None: the plan is not there yet."""
-
-
-def halted(gait: GaitState) -> str:
-    """The reason why the robot accepts no goals now, or ""."""
-    if gait.mode not in _STOPPED | {Mode.FALLEN}:
-        return ""
-    return f"the robot accepts no goals: {gait.reason}"
-
-
-class GoalTolerance(NamedTuple):
-    """The errors that count as arrived: metres and radians."""
-
-    position: float = 0.03
-    yaw: float = 0.05
-
-
-class Outcome(IntEnum):
-    """The outcome of a walk, as in WalkTo.action."""
-
-    UNKNOWN = 0
-    REACHED = 1
-    MISSED = 2
-    CANCELED = 3
-    PREEMPTED = 4
-    UNREACHABLE = 5
-    STOPPED = 6
-    FELL = 7
-
-
-@dataclass(frozen=True, slots=True)
-class WalkFeedback:
-    """The feedback of WalkTo.action."""
-
-    pose: Array  # planar pose of base_footprint
-    distance_left: float
-    replanning: bool
-    steps_taken: int
-    steps_left: int
-
-
-@dataclass(frozen=True, slots=True)
-class WalkResult:
-    """The result of WalkTo.action; `time` in seconds."""
-
-    outcome: Outcome
-    message: str
-    pose: Array
-    steps: int
-    time: float
-
-
-@dataclass(frozen=True, slots=True)
-class WalkTick:
-    """The messages to send after an update: a plan for the gait planner, or a request to stop."""
-
-    plan: FootstepPlan | None
-    stop: bool
-    feedback: WalkFeedback
-    result: WalkResult | None
 
 
 class Navigation:
@@ -179,7 +118,7 @@ class Navigation:
             result = self.stopped(gait, "whole_body_controller has restarted")
         elif gait.mode is Mode.FALLEN:
             result = self._result(Outcome.FELL, "the robot has fallen", gait)
-        elif gait.mode in _STOPPED and not self._recovers(gait):
+        elif gait.mode in STOPPED and not self._recovers(gait):
             result = self.stopped(gait, gait.reason)
         elif self._preempted:
             result = self._result(Outcome.PREEMPTED, "a later goal took over", gait)

@@ -10,7 +10,8 @@ import numpy as np
 from ..control.pace import Pace
 from ..control.reference import straight_steps
 from ..data import FootstepPlan
-from ..planning.navigation import Navigation, Outcome, WalkResult
+from ..planning.navigation import Navigation
+from ..planning.walks import Outcome, WalkResult
 from ..robot.model import HumanoidModel
 from ..robot.table import STANCE_WIDTH
 from ..seeds import generator
