@@ -194,6 +194,28 @@ def test_a_crowd_that_has_become_idle_leaves_nothing_to_go_through(node: Node) -
     assert sys.getsizeof(executor._queue._candidates) < 2000
 
 
+def test_a_worker_finds_something_destroyed_while_the_executor_looks(node: Node) -> None:
+    """The callback of another thread may find that nothing is left to take, at any moment of the search."""
+    heard = node.create_subscription(String, "heard", lambda _: None, 1)
+    gone = node.create_subscription(String, "gone", lambda _: None, 1)
+    node.create_publisher(String, "heard", 1).publish(String())
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    queue = executor._queue
+    queue.watch([node])
+    watch = queue._watches[id(gone)]
+    gone.handle.destroy_when_not_in_use()
+
+    def may_execute(entity: Any) -> bool:
+        if entity is heard:
+            queue.drop_if_destroyed(watch)
+        return True
+
+    assert heard in [each.entity for each in queue.collect(may_execute, None)]
+    queue.collect(may_execute, None)
+    assert watch not in queue._candidates
+
+
 def test_memory_does_not_grow_with_messages_or_timer_resets(node: Node) -> None:
     executor = SingleThreadedExecutor()
     executor.add_node(node)

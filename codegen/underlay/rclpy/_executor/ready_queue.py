@@ -1,13 +1,14 @@
 """The ready queue of an executor: which of its entities have something to do, without asking the idle ones.
 
-What other threads and signal handlers say comes through the inbox; everything here belongs to the thread that
-spins.
+What other threads and signal handlers say comes through the inbox; everything else here belongs to the thread
+that spins, unless it says "any thread".
 """
 
 from __future__ import annotations
 
 import heapq
 import itertools
+from collections import deque
 from collections.abc import Callable, Iterable
 from operator import attrgetter
 from typing import Any
@@ -47,6 +48,7 @@ class ReadyQueue:
         self._watches: dict[int, Watch] = {}  # by the id of the entity
         # Those to be asked in every round until they say no; a set with order.
         self._candidates: dict[Watch, None] = {}
+        self._destroyed: deque[Watch] = deque()  # no longer candidates, as soon as the queue looks
         self._alarms: list[tuple[int, int, Watch]] = []  # heap of (steady time [ns], number, watch)
         self._alarm_numbers = itertools.count()
         self.has_slept = False  # set by `sleep`, cleared by the one who asks
@@ -91,6 +93,8 @@ class ReadyQueue:
             noted = mark.watch()
             if noted is not None and not noted.closed:
                 candidates[noted] = None
+        while self._destroyed:
+            candidates.pop(self._destroyed.popleft(), None)
         if self._alarms and self._alarms[0][0] <= timing.monotonic_ns():
             self._ring()
         if not candidates:
@@ -117,9 +121,9 @@ class ReadyQueue:
         return ready
 
     def drop_if_destroyed(self, watch: Watch) -> None:
-        """Do not ask an entity again if its handle is gone, so that nothing could be taken."""
+        """Do not ask an entity again if its handle is gone, so that nothing could be taken; any thread."""
         if watch.is_destroyed():
-            self._candidates.pop(watch, None)
+            self._destroyed.append(watch)
 
     def move_to_end(self, watch: Watch) -> None:
         """Let an entity that has more to do queue up after the others."""
