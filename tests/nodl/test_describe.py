@@ -187,7 +187,7 @@ def test_whatever_is_seen_can_be_read(seen: list[SeenParameter], names: list[tup
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(
     st.lists(parameters, max_size=4, unique_by=lambda p: p.name),
     st.lists(st.tuples(names, st.sampled_from(Category)), max_size=5),

@@ -83,7 +83,7 @@ def test_mutated_documents(data: st.DataObject) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=150)
 @given(st.data())
 def test_many_mutated_documents(data: st.DataObject) -> None:
     _load_mutated_text(data)
@@ -132,7 +132,7 @@ def test_mutated_trees(text: str, where: list[int], tree: object) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(st.sampled_from(VALID), places, trees)
 def test_many_mutated_trees(text: str, where: list[int], tree: object) -> None:
     _load_mutated_tree(text, where, tree)

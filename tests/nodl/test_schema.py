@@ -117,7 +117,7 @@ def test_mutated_documents(data: st.DataObject) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=400)
+@settings(max_examples=150)
 @given(st.data())
 def test_many_mutated_documents(data: st.DataObject) -> None:
     _agree_on_mutated(data)

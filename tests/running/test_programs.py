@@ -185,7 +185,7 @@ def test_alone(words: list[str], tmp_path: Path) -> None:
 
 
 @in_company
-@pytest.mark.parametrize("words", ORDINARY, ids=named)
+@pytest.mark.parametrize("words", [*map(quick, ORDINARY)], ids=named)
 def test_in_company(words: list[str], transport: str, tmp_path: Path) -> None:
     if transport == "rclpy" and words[-1] == "many":
         pytest.skip("the real MultiThreadedExecutor never looks at the SystemExit of its threads")

@@ -272,7 +272,7 @@ def test_every_entity_survives_its_token(entity: Entity) -> None:
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(endpoints)
 def test_many_entities_survive_their_tokens(entity: Entity) -> None:
     _survives_its_token(entity)
