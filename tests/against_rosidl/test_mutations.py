@@ -190,10 +190,18 @@ def test_many_lines_at_random(given_input: tuple[str, str], ours: Ours, rosidl: 
 
 
 @pytest.mark.skipif(not REAL, reason="the wheels' interfaces are not installed")
-@settings(quietly, max_examples=400)
+@settings(quietly, max_examples=100)
 @given(changed=changed_files())
 def test_changed_files(changed: tuple[str, str], ours: Ours, rosidl: Reference) -> None:
     """Both agree however a real file is changed."""
+    check(*changed, ours, rosidl)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not REAL, reason="the wheels' interfaces are not installed")
+@settings(quietly, max_examples=400)
+@given(changed=changed_files())
+def test_many_changed_files(changed: tuple[str, str], ours: Ours, rosidl: Reference) -> None:
     check(*changed, ours, rosidl)
 
 

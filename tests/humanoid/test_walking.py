@@ -276,6 +276,7 @@ def test_a_push_to_the_outside_hurries_the_swing(model: HumanoidModel) -> None:
     assert swing_time(6.0) < swing_time(0.0) - 40_000_000
 
 
+@pytest.mark.slow
 def test_a_new_plan_takes_over_in_the_middle(model: HumanoidModel) -> None:
     robot = Lockstep(model, seed=2, noise=NOISE)
     robot.run(0.5)

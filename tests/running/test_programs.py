@@ -165,7 +165,7 @@ INTERRUPTED = [
 # Representatives for a quick run: the others differ in their output rather than in their mechanism.
 TYPICAL = (
     *("arguments.py", "identity.py", "-m", "error", "text", "kill"),
-    *("flag TERM", "busy", "leaves", "in spin", "spin", "uncaught", "asyncio", "loop"),
+    *("flag TERM", "busy", "spin", "asyncio"),
 )
 
 
