@@ -83,7 +83,19 @@ def without_parts(tmp_path_factory: pytest.TempPathFactory) -> Classes:
 
 @pytest.mark.parametrize(
     "types",
-    [("float64",), ("int8", "float64"), ("string",), ("string", "int32"), ("float64[3]",), MIXED],
+    [
+        MIXED,
+        *(
+            pytest.param(types, marks=pytest.mark.slow)
+            for types in [
+                ("float64",),
+                ("int8", "float64"),
+                ("string",),
+                ("string", "int32"),
+                ("float64[3]",),
+            ]
+        ),
+    ],
     ids=lambda types: "mixed" if len(types) > 2 else "-".join(types),
 )
 def test_planning_is_linear_in_the_fields(tmp_path: Path, types: tuple[str, ...]) -> None:

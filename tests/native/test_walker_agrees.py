@@ -64,9 +64,20 @@ def judge(payload: bytes, cls: type[Any]) -> bool:
     return accepted
 
 
-@settings(max_examples=700)
+@settings(max_examples=150)
 @given(data=st.data())
 def test_on_messages_and_what_becomes_of_them_on_the_way(classes: Classes, data: st.DataObject) -> None:
+    judge_mutations(classes, data)
+
+
+@pytest.mark.slow
+@settings(max_examples=700)
+@given(data=st.data())
+def test_on_many_messages(classes: Classes, data: st.DataObject) -> None:
+    judge_mutations(classes, data)
+
+
+def judge_mutations(classes: Classes, data: st.DataObject) -> None:
     cls = classes[data.draw(st.sampled_from(sorted(classes)))]
     encode = data.draw(st.sampled_from([serialize, big_endian]))
     payload = bytearray(encode(data.draw(messages(cls))))
