@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Generator
 from contextlib import contextmanager
@@ -34,6 +35,7 @@ def hearing() -> Generator[Heard]:
 
     def end(number: int, _: FrameType | None) -> None:
         heard.number = number
+        sys.unraisablehook = _silent
         raise _stop(number)
 
     before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
@@ -42,6 +44,13 @@ def hearing() -> Generator[Heard]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler or signal.SIG_DFL)
+
+
+def _silent(_: object) -> None:
+    """Say nothing of a finaliser that fails: the signal may have come while its object was half made.
+
+    It stays until the process ends, which is now: the object goes with the traceback, whenever that is.
+    """
 
 
 class Interruption:

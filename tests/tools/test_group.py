@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 
 import click
 import pytest
@@ -42,11 +43,24 @@ def end(what: str) -> None:
         raise RAISED[what]
     if what in SIGNALS:
         signal.raise_signal(SIGNALS[what])
+    elif what == "half made":
+        HalfMade(signal.SIGTERM)
     elif what == "import":
         try:
             signal.raise_signal(signal.SIGINT)
         except KeyboardInterrupt:
             raise ImportError("initialization failed") from None
+
+
+class HalfMade:
+    """The signal comes in its constructor, so that its finaliser misses an attribute."""
+
+    def __init__(self, number: int) -> None:
+        signal.raise_signal(number)
+        self.handle = number
+
+    def __del__(self) -> None:
+        assert self.handle
 
 
 @pytest.mark.parametrize(
@@ -59,11 +73,13 @@ def end(what: str) -> None:
         ("SIGINT", 2, ""),
         ("SIGTERM", 15, ""),
         ("import", 2, ""),
+        ("half made", 15, ""),
         ("mistake", 1, "error: this is wrong\n  = help: do that\n"),
     ],
 )
 def test_ends(ifgen: Run, monkeypatch: pytest.MonkeyPatch, what: str, code: int, said: str) -> None:
     monkeypatch.setattr(further, "names", lambda: ["tool"])
+    monkeypatch.setattr(sys, "unraisablehook", sys.__unraisablehook__)  # pytest's keeps what it hears to itself
     monkeypatch.setattr(further, "command", lambda name: tool if name == "tool" else None)
     done = ifgen("tool", "end", what)
     assert (done.code, done.out, done.err) == (code, "", said)
