@@ -95,6 +95,16 @@ def test_other_scenarios_end_well(scenario: str) -> None:
 
 
 @pytest.mark.slow
+def test_it_greets_whom_it_sees_and_does_what_people_want() -> None:
+    summary = demo("--scenario", "people")
+    assert summary["outcome"] == "done"
+    assert summary["falls"] == "0"
+    assert summary["dances"] == "2"  # one for the face, one that was asked for
+    assert int(summary["steps"]) >= 4
+    assert summary["touches"].startswith("0 ")
+
+
+@pytest.mark.slow
 @pytest.mark.skipif(not REAL, reason="real rclpy is not installed")
 @pytest.mark.parametrize("scenario", ["walk", "all", "stop"])
 def test_the_same_files_run_on_real_rclpy(scenario: str) -> None:

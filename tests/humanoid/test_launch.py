@@ -67,6 +67,7 @@ def test_a_node_that_cannot_begin_ends_the_launch() -> None:
     [
         ("scenario:=polka", "there is no scenario polka: choose one of all, dance, "),
         ("without:=tail", "the robot has no node 'tail': it has battery_monitor, "),
+        ("transport:=zenoh", "transport:=zenoh: expected auto, local or rclpy"),
         ("seed:=many", "seed:=many: expected a whole number"),
         ("speed:=fast", "speed:=fast: expected a number"),
     ],

@@ -15,7 +15,8 @@ from humanoid.robot import table
 from humanoid.robot.grid import FREE, OCCUPIED, UNKNOWN, Grid, nearest
 from humanoid.robot.obstacles import Solid, solids_of
 from humanoid.sensing.camera import lens_of
-from humanoid.sensing.mapping import FloorMap, Viewpoints
+from humanoid.sensing.floor_view import Viewpoints
+from humanoid.sensing.mapping import FloorMap
 from humanoid.simulation import rendering
 from humanoid.simulation.sim import Simulator
 
@@ -63,8 +64,19 @@ class Robot:
 
 
 def outside(solid: Solid, places: np.ndarray) -> np.ndarray:
-    """How far places are from the edge of an obstacle, at most; negative inside."""
-    return np.hypot(places[:, 0] - solid.x, places[:, 1] - solid.y) - solid.radius
+    """How far places are from the edge of an obstacle; 0 inside."""
+    off = np.abs(places - (solid.x, solid.y))
+    if solid.kind == "cylinder":
+        return np.maximum(np.hypot(*off.T) - solid.width / 2, 0.0)
+    return np.hypot(*np.maximum(off - solid.width / 2, 0.0).T)
+
+
+def filled(solid: Solid) -> np.ndarray:
+    """Places that an obstacle fills."""
+    side = np.linspace(-solid.width / 2, solid.width / 2, 9)
+    x, y = np.meshgrid(solid.x + side, solid.y + side)
+    places = np.stack([x.ravel(), y.ravel()], axis=1)
+    return places[outside(solid, places) < 1e-9]
 
 
 def test_obstacles_are_mapped_where_they_stand() -> None:
@@ -76,15 +88,53 @@ def test_obstacles_are_mapped_where_they_stand() -> None:
     occupied = grid.occupied()
     seen = robot.simulator.obstacles.solids[:4]
     for solid in seen:
-        front = np.array([[solid.x - solid.width / 2, solid.y]])
-        assert nearest(occupied, front)[0] < 0.10, solid.name
+        assert nearest(occupied, filled(solid)).max() < 0.20, solid.name
     wrong = np.min([outside(solid, occupied) for solid in seen], axis=0)
-    assert wrong.max() < 0.70  # cells behind an obstacle are a guess
-    assert np.mean(wrong > 0.12) < 0.25
+    assert wrong.max() < 0.15
+    assert np.mean(wrong > 0.05) < 0.03
     for x, y in ((2.4, 0.0), (1.6, 0.2), (2.0, -0.2)):
         assert grid.at(x, y) == FREE, (x, y)
     assert grid.at(-2.0, 0.0) == UNKNOWN  # behind the robot
     assert grid.at(99.0, 0.0) == UNKNOWN
+
+
+def test_where_two_stand_behind_each_other_each_is_mapped() -> None:
+    robot = Robot(["red_box 1.5 0 0.3 0.3", "yellow_cylinder 3.2 0.1 0.4 0.7", "red_box_2 2.4 -0.3 0.3 0.4"])
+    for x in (0.0, 0.1, 0.2):
+        grid = robot.look(x)
+    robot.close()
+    occupied = grid.occupied()
+    solids = robot.simulator.obstacles.solids
+    for solid in solids:
+        assert nearest(occupied, filled(solid)).max() < 0.15, solid.name
+    wrong = np.min([outside(solid, occupied) for solid in solids], axis=0)
+    assert wrong.max() < 0.20
+    assert np.mean(wrong > 0.08) < 0.05
+
+
+def test_from_several_sides_the_map_is_the_obstacle() -> None:
+    robot = Robot(["red_box 1.5 0 0.3 0.4"])
+    for angle in np.linspace(0, 2 * math.pi, 9):
+        grid = robot.look(1.5 - 1.6 * math.cos(angle), -1.6 * math.sin(angle), float(angle))
+    robot.close()
+    occupied = grid.occupied()
+    (solid,) = robot.simulator.obstacles.solids
+    assert nearest(occupied, filled(solid)).max() < 0.05
+    assert outside(solid, occupied).max() < 0.06
+
+
+@pytest.mark.parametrize(("x", "stays"), [(0.4, False), (0.9, True)])
+def test_what_the_camera_looks_through_is_gone_and_what_it_cannot_see_stays(x: float, stays: bool) -> None:
+    robot = Robot(["red_box 1.5 0 0.3 0.5"])
+    for before in np.arange(0.0, x, 0.1):
+        robot.look(float(before))
+    there = filled(robot.simulator.obstacles.solids[0])
+    assert nearest(robot.look(x).occupied(), there).max() < 0.1
+    assert robot.simulator.obstacles.move("red_box", -3.0, 0.0) == ""
+    for _ in range(5):  # its foot is nearer than the lower edge of the picture
+        grid = robot.look(x)
+    robot.close()
+    assert (len(grid.occupied()) > 0) == stays
 
 
 def test_an_obstacle_that_has_gone_is_cleared_and_one_out_of_sight_is_forgotten() -> None:

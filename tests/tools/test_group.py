@@ -79,7 +79,8 @@ class HalfMade:
 )
 def test_ends(ifgen: Run, monkeypatch: pytest.MonkeyPatch, what: str, code: int, said: str) -> None:
     monkeypatch.setattr(further, "names", lambda: ["tool"])
-    monkeypatch.setattr(sys, "unraisablehook", sys.__unraisablehook__)  # pytest's keeps what it hears to itself
+    # pytest's own keeps what it hears to itself.
+    monkeypatch.setattr(sys, "unraisablehook", sys.__unraisablehook__)
     monkeypatch.setattr(further, "command", lambda name: tool if name == "tool" else None)
     done = ifgen("tool", "end", what)
     assert (done.code, done.out, done.err) == (code, "", said)

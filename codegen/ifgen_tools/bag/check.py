@@ -63,6 +63,7 @@ def _differences(definition: Definition) -> Iterator[str]:
     from ifgen.evolution.compare import between
     from ifgen.evolution.edits import Category
     from ifgen.evolution.words import diagnostic
+
     from ifgen_tools.bag import targets
 
     new: Any = targets.installed(definition.type_name)

@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import click
+
 from ifgen_tools.bag.selection import selection
 
 if TYPE_CHECKING:
-    from ifgen_tools.bag.play import PlayOptions
-    from ifgen_tools.bag.record import RecordCommand
+    from ifgen_tools.bag.playing.play import PlayOptions
+    from ifgen_tools.bag.recording.record import RecordCommand
     from ifgen_tools.bag.selection import Selection
     from ifgen_tools.bag.storage.writer import Format
 
@@ -23,7 +24,7 @@ _SMALL: Final = 2**22
 
 def record_command(**chosen: Any) -> RecordCommand:
     """The choices of `bag record`. Raises click.UsageError."""
-    from ifgen_tools.bag.record import RecordCommand
+    from ifgen_tools.bag.recording.record import RecordCommand
     from ifgen_tools.bag.storage.writer import Limits
 
     topics = (*chosen["names"], *chosen["topics"])
@@ -76,7 +77,7 @@ def record_command(**chosen: Any) -> RecordCommand:
 
 def play_options(**chosen: Any) -> PlayOptions:
     """The choices of `bag play`. Raises click.UsageError."""
-    from ifgen_tools.bag.play import PlayOptions
+    from ifgen_tools.bag.playing.play import PlayOptions
 
     choice = playable(chosen)
     for rule in chosen["remap"]:
@@ -160,7 +161,7 @@ def _pair(text: str) -> tuple[str, str]:
 
 
 def _request_events(wanted: bool, source: str) -> int | None:
-    from ifgen_tools.bag.requests import SOURCES
+    from ifgen_tools.bag.playing.requests import SOURCES
 
     return SOURCES[source] if wanted else None
 

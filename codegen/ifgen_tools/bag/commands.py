@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import click
+
 from ifgen_tools import completion, options
 from ifgen_tools.bag.many import ManyCommand, ManyOption
 from ifgen_tools.group import ToolGroup
@@ -167,7 +168,7 @@ def bag() -> None:
 def record(**chosen: Any) -> int:
     """Record topics until Ctrl-C. Topics that appear later are recorded as well."""
     from ifgen_tools.bag.choices import record_command
-    from ifgen_tools.bag.record import record as run
+    from ifgen_tools.bag.recording.record import record as run
 
     return run(chosen["transport"], record_command(**chosen))
 
@@ -249,7 +250,7 @@ def play(bag_path: Path, **chosen: Any) -> int:
     same by the services of /rosbag2_player.
     """
     from ifgen_tools.bag.choices import play_options
-    from ifgen_tools.bag.play import play as run
+    from ifgen_tools.bag.playing.play import play as run
 
     return run(bag_path, chosen["transport"], play_options(**chosen))
 

@@ -12,6 +12,7 @@ from ifgen.config.settings import settle
 from ifgen_runtime.adapters import adapter_for
 from ifgen_runtime.bag.topics import Channel
 from ifgen_runtime.codec import deserialize, serialize
+
 from ifgen_tools.bag import targets
 from ifgen_tools.bag.conversions import Loss, conversion
 from ifgen_tools.bag.copying import Part, Passage, everything, written
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from ifgen_runtime.bag import Bag
     from ifgen_runtime.bag.topics import Definition
+
     from ifgen_tools.bag.targets import Known
 
 

@@ -8,7 +8,6 @@ from typing import Any, Final, cast
 
 import yaml
 from ifgen_runtime.bag.qos import OfferedQoS
-from ifgen_tools.errors import ToolError
 from rclpy.duration import Duration
 from rclpy.qos import (
     DurabilityPolicy,
@@ -18,6 +17,8 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
+
+from ifgen_tools.errors import ToolError
 
 _POLICIES: Final[dict[str, Any]] = {
     "history": HistoryPolicy,

@@ -13,6 +13,7 @@ from ifgen.dynamic.texts import sources_in
 from ifgen_runtime.bag.definitions import full_text
 from ifgen_runtime.bag.topics import Definition
 from ifgen_runtime.type_description import sources
+
 from ifgen_tools.errors import ToolError
 from ifgen_tools.types import interface_class
 

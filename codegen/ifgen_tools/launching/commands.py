@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 
 # Late imports: what a launch needs, and `launch` itself, which is found once the transport is chosen.
 
+_TRANSPORTS: dict[str, Literal["local", "rclpy", "auto"]] = {
+    f"transport:={name}": name for name in ("local", "rclpy", "auto")
+}
+"""Arguments that choose the transport, for launch files that declare one of this name."""
+
 _LIBRARIES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
 
 
@@ -75,6 +80,9 @@ def launch(
 
     paths, given = _split(words)
     output = settle().output
+    source = click.get_current_context().get_parameter_source("transport")
+    if source is not click.core.ParameterSource.COMMANDLINE:
+        transport = next((_TRANSPORTS[word] for word in given if word in _TRANSPORTS), transport)
     chosen = _activate(transport, output)
     path = _path(paths, output)
     from launch import LaunchContext

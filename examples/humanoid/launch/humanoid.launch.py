@@ -19,6 +19,7 @@ from launch_ros.actions import LifecycleNode, Node
 IDLE = "idle"
 ARGUMENTS = {
     "scenario": ("all", f"A scenario, a .yaml file of yours, or {IDLE}: stand, and wait for others"),
+    "transport": ("auto", "local: without ROS; rclpy: the real one, which `ros2 launch` always takes"),
     "nodes": (crew.ALL, "The nodes to start, with commas"),
     "without": (",".join(crew.EXTRA), "Nodes to leave out, with commas"),
     "model": ("", "Your own humanoid, as MJCF; empty: ours"),
@@ -43,6 +44,8 @@ def generate_launch_description() -> LaunchDescription:
 def _robot(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     """Return the nodes, and the director, whose end is the end of all."""
     said = {name: LaunchConfiguration(name).perform(context) for name in ARGUMENTS}
+    if said["transport"] not in {"auto", "local", "rclpy"}:
+        raise ValueError(f"transport:={said['transport']}: expected auto, local or rclpy")
     files = [said["parameters"]]
     if said["scenario"] != IDLE:
         files.append(str(scenarios.find(said["scenario"])))

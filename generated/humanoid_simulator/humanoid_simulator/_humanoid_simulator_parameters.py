@@ -42,20 +42,18 @@ class RandomObstaclesParameters:
     """The parameters `random_obstacles.*`."""
 
     count: int
-    """How many more obstacles are put at random places, which depend on the seed
+    """How many more obstacles are put at random places, which depend on the seed; as `obstacles`, from the
+    next `~/reset` on
 
-    Must be from 0 to 50. Can be set at start only.
+    Must be from 0 to 50.
     """
     area: tuple[float, ...]
     """Where they are put, x and y from, x and y to [m] in odom
 
-    Must have at most 4 elements. Must have exactly 4 elements. Can be set at start only.
+    Must have at most 4 elements. Must have exactly 4 elements.
     """
     free: tuple[float, ...]
-    """Places that they leave free, x and y of one after the other [m] in odom
-
-    Can be set at start only.
-    """
+    """Places that they leave free, x and y of one after the other [m] in odom"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,9 +111,7 @@ class HumanoidSimulatorParameters:
     """The parameters `camera.*`."""
     obstacles: tuple[str, ...]
     """Solid obstacles: `NAME X Y [WIDTH [HEIGHT]]` [m] in odom; a name begins with a colour and box or
-    cylinder, such as `red_box 1.2 0.3`
-
-    Can be set at start only.
+    cylinder, such as `red_box 1.2 0.3`; other ones stand there after the next `~/reset`
     """
     random_obstacles: RandomObstaclesParameters
     """The parameters `random_obstacles.*`."""
@@ -344,8 +340,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.STRING_ARRAY,
             [],
             ParameterDescriptor(
-                description="Solid obstacles: `NAME X Y [WIDTH [HEIGHT]]` [m] in odom; a name begins with a colour and box or cylinder, such as `red_box 1.2 0.3`",
-                read_only=True,
+                description="Solid obstacles: `NAME X Y [WIDTH [HEIGHT]]` [m] in odom; a name begins with a colour and box or cylinder, such as `red_box 1.2 0.3`; other ones stand there after the next `~/reset`",
             ),
         ),
         (
@@ -353,8 +348,7 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             Parameter.Type.INTEGER,
             0,
             ParameterDescriptor(
-                description="How many more obstacles are put at random places, which depend on the seed",
-                read_only=True,
+                description="How many more obstacles are put at random places, which depend on the seed; as `obstacles`, from the next `~/reset` on",
                 additional_constraints="must be from 0 to 50",
                 integer_range=[IntegerRange(from_value=0, to_value=50)],
             ),
@@ -365,7 +359,6 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             [0.6, -1.2, 3.4, 1.2],
             ParameterDescriptor(
                 description="Where they are put, x and y from, x and y to [m] in odom",
-                read_only=True,
                 additional_constraints="must have at most 4 elements; must have exactly 4 elements",
             ),
         ),
@@ -375,7 +368,6 @@ def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]
             [0.0, 0.0, 4.0, 0.0],
             ParameterDescriptor(
                 description="Places that they leave free, x and y of one after the other [m] in odom",
-                read_only=True,
             ),
         ),
         (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,8 @@ from humanoid.simulation.battery import BatteryPack
 from humanoid.simulation.rendering import HeadCamera, RenderingError
 from humanoid.simulation.sim import QUIET, Noise, Simulator
 from humanoid_interfaces.msg import ObstacleMotion, ObstacleTouch
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import BatteryState, JointState
 from std_msgs.msg import Bool, Empty, String
@@ -52,11 +55,12 @@ class HumanoidSimulator(HumanoidSimulatorBase):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        solids = self._solids()
-        self._model = load_model(self.parameters.model_file, self.parameters.joint_map, solids)
-        noise = Noise() if self.parameters.noise else QUIET
         self._period = round(self.parameters.control_period * data.SECOND)
-        self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period, solids)
+        try:
+            self._load(self._solids(self.parameters.obstacles, self.parameters.random_obstacles.free))
+        except ValueError as error:
+            raise ParametersError(str(error)) from None
+        self.add_on_set_parameters_callback(self._refuse_obstacles)
         self._battery = BatteryPack()
         self._health = Health(
             "humanoid_simulator: commands", self.get_logger(), "set-points", "pushes", "moves"
@@ -117,7 +121,10 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._take_picture()
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Start again at time 0."""
+        """Start again at time 0, between the obstacles that the parameters ask for by now."""
+        solids = self._solids(self.parameters.obstacles, self.parameters.random_obstacles.free)
+        if solids != self._loaded:
+            self._load(solids)
         self._begin()
         response.success = True
         return response
@@ -175,19 +182,39 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self.publish_obstacles(obstacle_markers(self.simulator.obstacles.solids, self.stamp))
         self._publish()
 
-    def _solids(self) -> tuple[Solid, ...]:
-        """The obstacles that the parameters ask for."""
-        values = self.parameters
+    def _load(self, solids: tuple[Solid, ...]) -> None:
+        """Build the world: the robot, and obstacles round it."""
+        self._loaded = solids
+        self._model = load_model(self.parameters.model_file, self.parameters.joint_map, solids)
+        noise = Noise() if self.parameters.noise else QUIET
+        self.simulator = Simulator(self._model, self.parameters.seed, noise, self._period, solids)
+        if self._camera is not None:
+            self._camera.close()  # it draws the world before
+            self._camera = None
+
+    def _solids(self, texts: Sequence[str], free: Sequence[float]) -> tuple[Solid, ...]:
+        """The obstacles that the parameters ask for. Raises ValueError."""
         try:
-            solids = solids_of(values.obstacles)
+            solids = solids_of(texts)
         except ValueError as error:
-            raise ParametersError(f"obstacles: {error}") from None
-        places = [*values.random_obstacles.free, *(part for s in solids for part in (s.x, s.y))]
+            raise ValueError(f"obstacles: {error}") from None
+        places = [*free, *(part for s in solids for part in (s.x, s.y))]
         if len(places) % 2:
-            raise ParametersError("random_obstacles.free: expected x and y of each place: an even count")
+            raise ValueError("random_obstacles.free: expected x and y of each place: an even count")
+        values = self.parameters
         x, y, to_x, to_y = values.random_obstacles.area
-        free = list(zip(places[::2], places[1::2], strict=True))
-        return solids + random_solids(values.seed, values.random_obstacles.count, (x, y, to_x, to_y), free)
+        pairs = list(zip(places[::2], places[1::2], strict=True))
+        return solids + random_solids(values.seed, values.random_obstacles.count, (x, y, to_x, to_y), pairs)
+
+    def _refuse_obstacles(self, parameters: list[Parameter]) -> SetParametersResult:
+        """Refuse obstacles that cannot be put there at the next reset."""
+        asked = {parameter.name: parameter.value for parameter in parameters}
+        texts = asked.get("obstacles", self.parameters.obstacles)
+        try:
+            self._solids(texts, asked.get("random_obstacles.free", self.parameters.random_obstacles.free))
+        except ValueError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
 
     def _restart_wall(self) -> None:
         """Align the wall clock with the present simulated time."""

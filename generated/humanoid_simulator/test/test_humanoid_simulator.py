@@ -18,6 +18,7 @@ from humanoid_simulator.humanoid_simulator import HumanoidSimulator
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
 
 PERIOD = 4_000_000  # ns
 
@@ -55,4 +56,24 @@ def test_set_points_for_too_few_joints_move_nothing(ros: Any) -> None:
     servos = ros.peer.create_publisher(JointState, "/joint_commands", base.JOINT_COMMANDS_SUBSCRIPTION_QOS)
     few = JointState(name=["l_knee"], position=[0.1])
     ros.deliver(lambda: servos.publish(few), lambda: node._health.counts["set-points"], "refusal")
+    assert node.stamp == 0
+
+
+def test_other_obstacles_stand_there_after_a_reset(ros: Any) -> None:
+    node = ros.start(HumanoidSimulator, use_sim_time=False)
+
+    def set_parameter(name: str, value: Any) -> str:
+        result = node.set_parameters([Parameter(name, value=value)])[0]
+        return "" if result.successful else str(result.reason)
+
+    assert set_parameter("obstacles", ["red_box 1.5 0.1"]) == ""
+    assert node.simulator.obstacles.solids == ()
+    node.handle_reset(Trigger.Request(), Trigger.Response())
+    assert [solid.name for solid in node.simulator.obstacles.solids] == ["red_box"]
+    assert set_parameter("random_obstacles.count", 2) == ""
+    assert set_parameter("obstacles", ["tree 1 1"]).startswith("obstacles: 'tree 1 1'")
+    free = "random_obstacles.free: expected x and y of each place: an even count"
+    assert set_parameter("random_obstacles.free", [0.0, 0.0, 1.0]) == free
+    node.handle_reset(Trigger.Request(), Trigger.Response())
+    assert len(node.simulator.obstacles.solids) == 3
     assert node.stamp == 0

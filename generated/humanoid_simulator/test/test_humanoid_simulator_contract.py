@@ -874,8 +874,7 @@ PARAMETERS = [
         [],
         [[], ["a"], ["b"], ["c"], ["d"], ["a", "b"]],
         [],
-        description="Solid obstacles: `NAME X Y [WIDTH [HEIGHT]]` [m] in odom; a name begins with a colour and box or cylinder, such as `red_box 1.2 0.3`",
-        read_only=True,
+        description="Solid obstacles: `NAME X Y [WIDTH [HEIGHT]]` [m] in odom; a name begins with a colour and box or cylinder, such as `red_box 1.2 0.3`; other ones stand there after the next `~/reset`",
     ),
     ParameterCase(
         "random_obstacles.count",
@@ -883,8 +882,7 @@ PARAMETERS = [
         0,
         [0, 50, 1, 49, 2, 3],
         [-1, 51],
-        description="How many more obstacles are put at random places, which depend on the seed",
-        read_only=True,
+        description="How many more obstacles are put at random places, which depend on the seed; as `obstacles`, from the next `~/reset` on",
         range=(0, 50),
     ),
     ParameterCase(
@@ -894,7 +892,6 @@ PARAMETERS = [
         [[0.6, -1.2, 3.4, 1.2], [0.6, 0.6, 0.6, 0.6], [0.6, -1.2, 3.4, 0.6], [0.6, -1.2, 3.4, -1.2], [0.6, -1.2, 3.4, 3.4], [0.6, -1.2, 3.4, 1.0]],
         [[0.6, -1.2, 3.4], [0.6, -1.2, 3.4, 1.2, 1.0]],
         description="Where they are put, x and y from, x and y to [m] in odom",
-        read_only=True,
     ),
     ParameterCase(
         "random_obstacles.free",
@@ -903,7 +900,6 @@ PARAMETERS = [
         [[0.0, 0.0, 4.0, 0.0], [0.0, 4.0, 1.0, 0.98], [0.0, 0.0, 0.0, 0.0], [0.0, 4.0, 1.0, 0.0], [0.0, 4.0, 1.0, 4.0], [0.0, 4.0, 1.0, 1.0]],
         [],
         description="Places that they leave free, x and y of one after the other [m] in odom",
-        read_only=True,
     ),
     ParameterCase(
         "ground_truth",

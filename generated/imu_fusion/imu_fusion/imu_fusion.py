@@ -105,8 +105,8 @@ class ImuFusion(ImuFusionBase):
         self._estimate()
 
     def _estimate(self) -> None:
-        stamp = newest_of_all(self._joints, self._imu, *self._wrenches)
-        if stamp is None or stamp <= self._done:
+        stamp = newest_of_all(self._joints, self._imu, *self._wrenches, after=self._done)
+        if stamp is None:
             return
         self._done = stamp
         joints, imu = self._joints.at(stamp), self._imu.at(stamp)

@@ -113,8 +113,8 @@ class JointController(JointControllerBase):
 
     def _stand(self) -> None:
         """Answer the newest complete readings."""
-        now = newest_of_all(self._joints, self._imu, *self._wrenches)
-        if now is None or now <= self._done:
+        now = newest_of_all(self._joints, self._imu, *self._wrenches, after=self._done)
+        if now is None:
             return
         sensors = self._sensors(now)
         problem = imu_problem(sensors.imu) or next(filter(None, map(wrench_problem, sensors.wrenches)), "")

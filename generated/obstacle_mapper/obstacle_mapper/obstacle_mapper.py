@@ -11,7 +11,8 @@ from humanoid.ros.grids import occupancy_grid
 from humanoid.ros.images import read_image, read_lens
 from humanoid.ros.running import run
 from humanoid.sensing.camera import Lens
-from humanoid.sensing.mapping import FloorMap, Viewpoints
+from humanoid.sensing.floor_view import Viewpoints
+from humanoid.sensing.mapping import FloorMap
 from nav_msgs.msg import OccupancyGrid
 from sensor_msgs.msg import CameraInfo, Image, JointState
 from tf2_msgs.msg import TFMessage
@@ -58,28 +59,32 @@ class ObstacleMapper(ObstacleMapperBase):
             return
         stamp = messages.nanoseconds(message.header.stamp)
         apart = max(abs(messages.nanoseconds(m.header.stamp) - stamp) for m in (joints, base))
-        problem = (
-            f"joints or pose are {apart / SECOND:.2f} s apart from their image" if apart > _APART else ""
-        )
-        if not problem:
+        problem = ""
+        if apart > _APART:
+            problem = f"joints or pose are {apart / SECOND:.2f} s apart from their image"
+        else:
             try:
-                picture = read_image(message)
-                angles = messages.read_joint_states(joints, self._body).position
+                self._look(stamp, message, lens, joints, base)
             except ValueError as error:
                 problem = str(error)
-        if not problem and picture.shape[:2] != (lens.height, lens.width):
-            problem = "an image of another size than its calibration"
         if problem:
             self.get_logger().warning(f"not mapped: {problem}", throttle_duration_sec=5.0)
             return
-        place = messages.numbers(base.transform.translation)
-        viewpoint = self._viewpoints.of(place, messages.numbers(base.transform.rotation), angles)
-        memory = round(self.parameters.memory * SECOND)
-        self._map.see(stamp, picture, lens, viewpoint, self.parameters.range, memory)
         grid = occupancy_grid(self._map.grid, stamp)
         if self._published is None or grid.data != self._published.data:
             self._published = grid
             self.publish_map(grid)
+
+    def _look(self, stamp: int, message: Image, lens: Lens, joints: JointState, base: Any) -> None:
+        """Add an image to the map. Raises ValueError if it cannot be read."""
+        picture = read_image(message)
+        angles = messages.read_joint_states(joints, self._body).position
+        if picture.shape[:2] != (lens.height, lens.width):
+            raise ValueError("an image of another size than its calibration")
+        place = messages.numbers(base.transform.translation)
+        viewpoint = self._viewpoints.of(place, messages.numbers(base.transform.rotation), angles)
+        memory = round(self.parameters.memory * SECOND)
+        self._map.see(stamp, picture, lens, viewpoint, self.parameters.range, memory)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -173,8 +173,9 @@ class WholeBodyController(WholeBodyControllerBase):
         # Odometry that has been missing for a while is no longer awaited. What counts is how many readings
         # have arrived since: if all were held up alike, odometry is on its way.
         late = self._joints.count_since(self._odometry.newest) >= _LATE
-        stamp = newest_of_all(self._joints, self._imu, *(() if late else (self._odometry,)))
-        if stamp is not None and stamp > self._done:
+        awaited = (self._joints, self._imu) if late else (self._joints, self._imu, self._odometry)
+        stamp = newest_of_all(*awaited, after=self._done)
+        if stamp is not None:
             self._tick(stamp)
 
     def _tick(self, now: int) -> None:

@@ -95,6 +95,33 @@ def test_time_obeys(make_robot: MakeRobot, ros_executor: Any, monkeypatch: pytes
     visitor.close()
 
 
+def test_visitors_choose_the_scene(
+    make_robot: MakeRobot, ros_executor: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = make_robot(*EVERYBODY)
+    visitor = Visitor(robot, ros_executor, monkeypatch)
+    robot.until(lambda: robot.mode is Mode.STANDING)
+
+    def obstacles() -> list[str]:
+        return [solid.name for solid in robot.physics.obstacles.solids]
+
+    assert obstacles() == []
+    for _ in range(2):
+        assert visitor.ask(do="restart", scenario="obstacles") == (True, "time starts again, with obstacles")
+        assert obstacles() == ["red_box", "green_cylinder", "yellow_box"]
+        robot.until(lambda: robot.mode is Mode.WALKING)
+        assert visitor.ask(do="move", name="red_box", x=-2.0, y=0.0)[0]
+    robot.until(lambda: robot.physics.obstacles.solids[0].x == -2.0)
+    # Without a scenario time starts again in the same scene, and everything stands in its place.
+    assert visitor.ask(do="restart", scenario="")[0]
+    assert robot.physics.obstacles.solids[0].x == 1.5
+    # The floor of a scenario that puts nothing on it is empty.
+    assert visitor.ask(do="restart", scenario="walk")[0]
+    assert obstacles() == []
+    robot.until(lambda: robot.mode is Mode.WALKING)
+    visitor.close()
+
+
 REFUSED: Mapping[str, tuple[dict[str, Any], str]] = {
     "nobody": ({"do": "walk", "x": 1, "y": 0, "yaw": 0}, "navigation_action_server is not there"),
     "far": ({"do": "walk", "x": 16, "y": 0, "yaw": 0}, "x must be a number from -15 to 15"),
@@ -112,10 +139,7 @@ REFUSED: Mapping[str, tuple[dict[str, Any], str]] = {
         {"do": "restart", "scenario": "../walk"},
         "there is no scenario '../walk': choose one of all, ",
     ),
-    "setup": (
-        {"do": "restart", "scenario": "obstacles"},
-        "it sets up humanoid_simulator: start it with `ifgen demo",
-    ),
+    "setup": ({"do": "restart", "scenario": "obstacles"}, "humanoid_simulator is not there"),
     "obstacle": ({"do": "move", "name": "tree", "x": 1, "y": 0}, "there is no obstacle 'tree'"),
     "speed": ({"do": "speed", "factor": -1}, "a speed is not negative; 0 is as fast as possible"),
     "unknown": ({"do": "explode"}, "there is no command 'explode'"),

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import pytest
-from ifgen_tools.bag.pacing import PlayClock
-from ifgen_tools.bag.playing import Player, Range
+from ifgen_tools.bag.playing.pacing import PlayClock
+from ifgen_tools.bag.playing.player import Player, Range
 
 S = 10**9
 

@@ -9,6 +9,7 @@ from types import TracebackType
 from typing import Any, Final, Protocol, Self
 
 from ifgen_runtime.bag.topics import Channel
+
 from ifgen_tools.bag.storage import metadata
 from ifgen_tools.bag.storage.metadata import FileFacts
 

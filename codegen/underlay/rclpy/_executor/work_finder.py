@@ -128,8 +128,11 @@ class WorkFinder:
     def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
         """Yield the tasks that are not done, newest first; then forget those that are."""
         used = self._nodes if nodes is None else nodes
+        some_done = False  # most rounds find only tasks that wait
         for work in reversed(self._tasks[:]):
             task, _, node = work
             if task._pending() and not task.executing() and (node is None or node in used):
                 yield work
-        self._tasks.forget_done()
+            some_done = some_done or not task._pending()
+        if some_done:
+            self._tasks.forget_done()

@@ -92,10 +92,9 @@ def quaternion(values: Array) -> Quaternion:
 
 def numbers(message: Any) -> Array:
     """The numbers of a Vector3, Point or Quaternion."""
-    fields = [message.x, message.y, message.z]
-    if isinstance(message, Quaternion):
-        fields.append(message.w)
-    return np.array(fields, dtype=float)
+    if type(message) is Quaternion:
+        return np.array((message.x, message.y, message.z, message.w), dtype=float)
+    return np.array((message.x, message.y, message.z), dtype=float)
 
 
 def planar_pose(x: float, y: float, yaw: float) -> Pose:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from typing import Any, Generic, TypeVar
 
 Reading = TypeVar("Reading")
@@ -54,11 +56,11 @@ class Recent(Generic[Reading]):
 
     def count_since(self, stamp: int) -> int:
         """How many of the last few readings are newer than a moment."""
-        return sum(one > stamp for one in self._readings)
+        return sum(one > stamp for one in self._readings) if self.newest > stamp else 0
 
-    def stamps(self) -> list[int]:
-        """The moments of the readings, newest first."""
-        return list(reversed(self._readings))
+    def since(self, stamp: int) -> Iterator[int]:
+        """The moments of the readings after another one, newest first."""
+        return itertools.takewhile(stamp.__lt__, reversed(self._readings))
 
 
 def rewound(*topics: Recent[Any]) -> bool:
@@ -74,6 +76,12 @@ def rewound(*topics: Recent[Any]) -> bool:
     return True
 
 
-def newest_of_all(first: Recent[Any], *others: Recent[Any]) -> int | None:
-    """The newest moment for which every topic has a reading."""
-    return next((stamp for stamp in first.stamps() if all(other.has(stamp) for other in others)), None)
+def newest_of_all(first: Recent[Any], *others: Recent[Any], after: int = -1) -> int | None:
+    """The newest moment after another one for which every topic has a reading."""
+    for stamp in first.since(after):
+        for other in others:
+            if not other.has(stamp):
+                break
+        else:
+            return stamp
+    return None

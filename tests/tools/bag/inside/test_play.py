@@ -262,7 +262,7 @@ def test_keys_say_what_they_did(ifgen: Run, drive: Path, monkeypatch: pytest.Mon
     def keyboard(actions: Any, **_: Any) -> Generator[Keys]:
         yield Keys(actions, pressed)
 
-    monkeypatch.setattr("ifgen_tools.bag.play.keyboard", keyboard)
+    monkeypatch.setattr("ifgen_tools.bag.playing.play.keyboard", keyboard)
     with listening() as listener:
         listener.hear("/position", Point, "x")
         outcome = ifgen("bag", "play", drive, "--transport", "local")

@@ -14,8 +14,8 @@ import rclpy
 from geometry_msgs.msg import Point
 from ifgen_runtime.bag import Bag
 from ifgen_tools.bag.choices import file_format
-from ifgen_tools.bag.record import RecordCommand, Recording, record
-from ifgen_tools.bag.recording import TopicRecorder
+from ifgen_tools.bag.recording.record import RecordCommand, Recording, record
+from ifgen_tools.bag.recording.recorder import TopicRecorder
 from ifgen_tools.bag.selection import selection
 from ifgen_tools.bag.storage.writer import Limits
 from ifgen_tools.errors import ToolError
@@ -224,7 +224,7 @@ def test_a_type_that_nobody_describes(
     def refuse(*_: Any) -> None:
         raise ToolError("nobody describes it")
 
-    monkeypatch.setattr("ifgen_tools.bag.recording.class_with_hash", refuse)
+    monkeypatch.setattr("ifgen_tools.bag.recording.recorder.class_with_hash", refuse)
     talker.create_publisher(ifgen.dynamic.class_from_text("lab_msgs/msg/Speed", "float64 v\n"), "speed", 10)
     talk, said = Talk(talker.create_publisher(Point, "position", 10), points(3)), list[str]()
 

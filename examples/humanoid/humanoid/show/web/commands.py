@@ -4,17 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from action_msgs.srv import CancelGoal
 from geometry_msgs.msg import Point, Vector3, Wrench, WrenchStamped
 from humanoid_interfaces.action import PerformDance, WalkTo
 from humanoid_interfaces.msg import ObstacleMotion
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import SetParameters
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -26,9 +23,7 @@ from ...planning.choreography import DANCES
 from ...planning.tasks import task_of
 from ...ros import messages
 from ..audience import PUSH_TIME, Audience
-from ..scenarios import ScenarioFileError, names, read
-
-Answer = Callable[[bool, str], None]
+from .scenes import SIMULATOR, Answer, Refusal, Scene, Scenes, require
 
 _STRONGEST = 60.0  # N s
 _FARTHEST = 15.0  # m from the origin
@@ -39,11 +34,6 @@ _NOTICED = 0.3  # s after which all nodes know that time starts again
 _LOGGED = 0.2  # s that a node's log has to explain a refusal
 _SAID_TO_ROBOT = ("stop", "stop all", "walk home")  # besides tasks
 _NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-_OURS = ("high_level_task_manager", "audience")  # nodes whose parameters a scenario may change on the way
-
-
-class Refusal(ValueError):
-    """A command is not done; the text says why."""
 
 
 class Commands:
@@ -58,7 +48,7 @@ class Commands:
     ) -> None:
         self._why = why
         self._audience = audience
-        self._started = scenario
+        self._scenes = Scenes(node, scenario)
         self._walk_to = ActionClient(node, WalkTo, "/walk_to")
         self._perform_dance = ActionClient(node, PerformDance, "/perform_dance")
         self._cancels = {
@@ -69,7 +59,6 @@ class Commands:
         self._pause = node.create_client(SetBool, "/humanoid_simulator/pause")
         self._step = node.create_client(Trigger, "/humanoid_simulator/step")
         self._reset = node.create_client(Trigger, "/humanoid_simulator/reset")
-        self._set = node.create_client(SetParameters, "/humanoid_simulator/set_parameters")
         self._push = node.create_publisher(WrenchStamped, "/humanoid_simulator/push", 10)
         self._move = node.create_publisher(ObstacleMotion, "/humanoid_simulator/move_obstacle", 10)
         self._speech = node.create_publisher(String, "/speech/text", 10)
@@ -121,7 +110,7 @@ class Commands:
     def _on_walk(self, asked: Mapping[str, Any], answer: Answer) -> None:
         x, y = _number(asked, "x", _FARTHEST), _number(asked, "y", _FARTHEST)
         yaw = _number(asked, "yaw", 2 * math.pi)
-        _ready(self._walk_to.server_is_ready(), "navigation_action_server")
+        require(self._walk_to.server_is_ready(), "navigation_action_server")
         self._forget_tasks()
         goal = WalkTo.Goal(target=messages.stamped(0, messages.planar_pose(x, y, yaw)))
         self._send(self._walk_to, goal, f"walking to ({x:.2f} m, {y:.2f} m)", answer)
@@ -130,7 +119,7 @@ class Commands:
         name = asked.get("name")
         if not isinstance(name, str) or name not in DANCES:
             raise Refusal(f"there is no dance {name!r}: choose one of {', '.join(DANCES)}")
-        _ready(self._perform_dance.server_is_ready(), "dance_action_server")
+        require(self._perform_dance.server_is_ready(), "dance_action_server")
         self._forget_tasks()
         self._send(self._perform_dance, PerformDance.Goal(dance=name), f"dancing: {name}", answer)
 
@@ -177,13 +166,13 @@ class Commands:
         answer(True, "cancelled")
 
     def _on_stop(self, asked: Mapping[str, Any], answer: Answer, *, active: bool) -> None:
-        _ready(self._stop.service_is_ready(), "emergency_stop")
+        require(self._stop.service_is_ready(), "emergency_stop")
         done = "emergency stop" if active else "released"
         future = self._stop.call_async(SetBool.Request(data=active))
         future.add_done_callback(partial(_answered, answer=answer, done=done))
 
     def _on_pause(self, asked: Mapping[str, Any], answer: Answer, *, paused: bool) -> None:
-        _ready(self._pause.service_is_ready(), "humanoid_simulator")
+        require(self._pause.service_is_ready(), SIMULATOR)
         self._rounds = 0
         future = self._pause.call_async(SetBool.Request(data=paused))
         future.add_done_callback(partial(_answered, answer=answer, done="paused" if paused else "time runs"))
@@ -199,36 +188,23 @@ class Commands:
         factor = _number(asked, "factor", _FASTEST)
         if factor < 0:
             raise Refusal("a speed is not negative; 0 is as fast as possible")
-        _ready(self._set.service_is_ready(), "humanoid_simulator")
-        value = ParameterValue(type=ParameterType.PARAMETER_DOUBLE, double_value=factor)
-        request = SetParameters.Request(parameters=[Parameter(name="speed", value=value)])
-        future = self._set.call_async(request)
         said = f"{factor:g} times real time at most" if factor else "as fast as possible"
 
-        def end(done: Any) -> None:
-            result = done.result().results[0]
-            if result.successful:
-                self.speed = factor
-            answer(result.successful, said if result.successful else result.reason)
+        def end() -> None:
+            self.speed = factor
+            answer(True, said)
 
-        future.add_done_callback(end)
+        self._scenes.tune({SIMULATOR: {"speed": factor}}, end, answer)
 
     def _on_restart(self, asked: Mapping[str, Any], answer: Answer) -> None:
         """Put the robot where it started, at time 0, and play a scenario if one is named."""
         name = asked.get("scenario", "")
-        tasks, events = self._scenario(name) if name else ([], [])
-        _ready(self._reset.service_is_ready() and self._stop.service_is_ready(), "humanoid_simulator")
-        self._forget_tasks()
-        for client in self._cancels.values():
-            if client.service_is_ready():
-                client.call_async(CancelGoal.Request())
-        if self.paused:
-            self.paused = False
-            self._pause.call_async(SetBool.Request(data=False))
+        scene = self._scenes.find(name) if name else Scene()
+        require(self._reset.service_is_ready() and self._stop.service_is_ready(), SIMULATOR)
         said = f"time starts again, with {name}" if name else "time starts again"
 
         def begin(_: Any) -> None:
-            self._play(tasks, events)
+            self._play(scene)
             answer(True, said)
 
         def release() -> None:
@@ -239,30 +215,24 @@ class Commands:
             # Everybody has to notice first that time has gone back.
             self._later.append((time.monotonic() + _NOTICED, release))
 
-        self._reset.call_async(Trigger.Request()).add_done_callback(wait)
+        def reset() -> None:
+            self._forget_tasks()
+            for client in self._cancels.values():
+                if client.service_is_ready():
+                    client.call_async(CancelGoal.Request())
+            if self.paused:
+                self.paused = False
+                self._pause.call_async(SetBool.Request(data=False))
+            self._reset.call_async(Trigger.Request()).add_done_callback(wait)
 
-    def _play(self, tasks: list[str], events: list[str]) -> None:
+        self._scenes.tune(scene.others, reset, answer)
+
+    def _play(self, scene: Scene) -> None:
         """Give the robot tasks, and the audience its events; the robot stands up first, for a second."""
         if self._audience is not None:
-            self._audience.play(events, self.task + 1)
-        for words in ("wait 1", *tasks) if tasks else ():
+            self._audience.play(scene.events, self.task + 1)
+        for words in ("wait 1", *scene.tasks) if scene.tasks else ():
             self._say(words)
-
-    def _scenario(self, name: object) -> tuple[list[str], list[str]]:
-        """Tasks and events of a scenario."""
-        is_first = bool(self._started) and name == Path(self._started).stem
-        if not isinstance(name, str) or not (is_first or name in names()):
-            raise Refusal(f"there is no scenario {name!r}: choose one of {', '.join(names())}")
-        try:
-            nodes = read(self._started if is_first else name)
-        except ScenarioFileError as error:
-            raise Refusal(str(error)) from None
-        if not is_first and (others := set(nodes) - set(_OURS)):
-            raise Refusal(
-                f"it sets up {', '.join(sorted(others))}: start it with `ifgen demo --web --scenario {name}`"
-            )
-        tasks = _texts(nodes.get(_OURS[0], {}).get("tasks"))
-        return tasks, _texts(nodes.get(_OURS[1], {}).get("events"))
 
     def _forget_tasks(self) -> None:
         """Visitors take over: what the robot had to do is over."""
@@ -293,17 +263,8 @@ def _answered(future: Any, answer: Answer, done: str) -> None:
     answer(response.success, done if response.success else response.message or "refused")
 
 
-def _ready(is_there: bool, node: str) -> None:
-    if not is_there:
-        raise Refusal(f"{node} is not there")
-
-
 def _number(asked: Mapping[str, Any], name: str, most: float) -> float:
     value = asked.get(name)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= most:
         raise Refusal(f"{name} must be a number from {-most:g} to {most:g}")
     return float(value)
-
-
-def _texts(values: Iterable[Any] | None) -> list[str]:
-    return [str(value) for value in values or () if value]

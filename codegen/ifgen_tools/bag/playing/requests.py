@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ifgen_runtime.bag.classes import decoder
 from ifgen_runtime.codec import serialize
+
 from ifgen_tools.bag.selection import SERVICE_EVENTS
 from ifgen_tools.calling import class_on_the_wire, known_class
 from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
-    from ifgen_tools.session import Session
     from rclpy.task import Future
+
+    from ifgen_tools.session import Session
 
 SOURCES: Final = {"client_introspection": 0, "service_introspection": 1}
 """Whose events have the requests: REQUEST_SENT or REQUEST_RECEIVED of service_msgs/msg/ServiceEventInfo."""

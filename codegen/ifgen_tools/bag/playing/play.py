@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ifgen_tools.bag.keys import DOWN, RIGHT, SPACE, UP, keyboard
-from ifgen_tools.bag.pacing import PlayClock
-from ifgen_tools.bag.playing import Player, Range, part
+from ifgen_tools.bag.playing.pacing import PlayClock
+from ifgen_tools.bag.playing.player import Player, Range, part
+from ifgen_tools.bag.playing.requests import Requester, requester, wait_for_answers, wait_for_servers
 from ifgen_tools.bag.reading import reading
-from ifgen_tools.bag.requests import Requester, requester, wait_for_answers, wait_for_servers
 from ifgen_tools.bag.selection import Selection, is_service_event
 from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
@@ -82,9 +82,10 @@ class _Playing:
     """A bag that is played by the node of a session."""
 
     def __init__(self, bag: Bag, session: Session, options: PlayOptions, span: Range) -> None:
-        from ifgen_tools.bag.player_services import offer_services
-        from ifgen_tools.bag.qos import overrides
         from rclpy.clock import Clock, ClockType
+
+        from ifgen_tools.bag.playing.services import offer_services
+        from ifgen_tools.bag.qos import overrides
 
         self._bag, self._session, self._options = bag, session, options
         self._overrides = overrides(options.qos_overrides)
@@ -156,6 +157,7 @@ class _Playing:
 
     def _open(self, channel: Channel) -> None:
         from ifgen_runtime.bag import BagError
+
         from ifgen_tools.bag.qos import adapted_offer
 
         topic = channel.topic

@@ -20,8 +20,9 @@ from ifgen_tools.session import Session, open_session
 
 if TYPE_CHECKING:
     from ifgen_runtime.bag.topics import Channel
-    from ifgen_tools.bag.recording import Write
     from rclpy.qos import QoSProfile
+
+    from ifgen_tools.bag.recording.recorder import Write
 
 # Late imports: those of rclpy, once the transport has been chosen.
 
@@ -86,8 +87,8 @@ class Recording:
 
     def __init__(self, session: Session, command: RecordCommand, output: Path, is_folder: bool) -> None:
         from ifgen_tools.bag.qos import overrides
-        from ifgen_tools.bag.recorder_services import offer_services
-        from ifgen_tools.bag.recording import RecordOptions, TopicRecorder
+        from ifgen_tools.bag.recording.recorder import RecordOptions, TopicRecorder
+        from ifgen_tools.bag.recording.services import offer_services
 
         self._session, self._command, self._output = session, command, output
         options = RecordOptions(
@@ -159,6 +160,7 @@ class Recording:
 
     def _open(self, topic: str, cls: type[Any], offers: list[QoSProfile]) -> Write:
         from ifgen_runtime.bag.qos import offered
+
         from ifgen_tools.bag.definitions import channel_of
 
         channel = channel_of(topic, cls, tuple(dict.fromkeys(map(offered, offers))))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final, Protocol, TypeAlias
 
-from ifgen_tools.bag.pacing import PlayClock
+from ifgen_tools.bag.playing.pacing import PlayClock
 
 _LOOK: Final = 0.1
 """Seconds of waiting after which whoever waits looks around: for keys, and for Ctrl-C."""

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 from ifgen_tools.bag.rosbag2_interfaces import answering, service
 
 if TYPE_CHECKING:
-    from ifgen_tools.bag.playing import Player
     from rclpy.node import Node
+
+    from ifgen_tools.bag.playing.player import Player
 
 _S = 10**9
 

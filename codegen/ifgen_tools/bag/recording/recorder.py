@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
+from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
+
 from ifgen_tools.bag.qos import adapted_request
 from ifgen_tools.bag.selection import Selection
 from ifgen_tools.errors import ToolError
 from ifgen_tools.types import WireType, class_with_hash
-from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
 if TYPE_CHECKING:
     from rclpy.node import Node

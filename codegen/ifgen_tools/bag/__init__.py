@@ -1,0 +1,1 @@
+"""`ifgen bag`: records, plays, and looks into bags."""

@@ -1,0 +1,1 @@
+"""Records what is published, and lets others pause it, split it and take snapshots."""
