@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 # Late imports: what a launch needs, and `launch` itself, which is found once the transport is chosen.
 
 _TRANSPORTS: dict[str, Literal["local", "rclpy", "auto"]] = {
-    f"transport:={name}": name for name in ("local", "rclpy", "auto")
+    "transport:=local": "local",
+    "transport:=rclpy": "rclpy",
+    "transport:=auto": "auto",
 }
 """Arguments that choose the transport, for launch files that declare one of this name."""
 
