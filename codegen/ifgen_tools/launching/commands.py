@@ -84,7 +84,8 @@ def launch(
     output = settle().output
     source = click.get_current_context().get_parameter_source("transport")
     if source is not click.core.ParameterSource.COMMANDLINE:
-        transport = next((_TRANSPORTS[word] for word in given if word in _TRANSPORTS), transport)
+        for word in given:
+            transport = _TRANSPORTS.get(word, transport)
     chosen = _activate(transport, output)
     path = _path(paths, output)
     from launch import LaunchContext
