@@ -15,12 +15,28 @@ harness = importlib.util.module_from_spec(_SPEC)
 sys.modules[_SPEC.name] = harness  # dataclasses look their module up
 _SPEC.loader.exec_module(harness)
 
+# Two seconds or more, several of them waits on the real rclpy; the others have something of each subject.
+LONG = {
+    "action_peers",
+    "action_threads",
+    "comm_bytes",
+    "comm_events",
+    "comm_types_and_waiting",
+    "exec_rounds",
+    "exec_signals",
+    "node_arguments",
+    "time_clocks",
+}
 SCENARIOS = sorted(harness.SCENARIOS.glob("*.py"))
+CASES = [
+    pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in LONG else [])
+    for path in SCENARIOS
+]
 
 
 @pytest.mark.skipif(harness.real_rclpy_missing() is not None, reason=str(harness.real_rclpy_missing()))
 @pytest.mark.timeout(4 * harness.TIME_LIMIT)
-@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda path: path.stem)
+@pytest.mark.parametrize("scenario", CASES)
 def test_prints_the_same(scenario: Path) -> None:
     """The transcripts are equal and both runs end with code 0."""
     report = harness.compare(scenario)

@@ -88,8 +88,8 @@ def differences(ours: dict[str, Any], rosidl: dict[str, Any]) -> list[str]:
     [
         pytest.param(["form_msgs", "--thorough"], "", id="every form", marks=pytest.mark.slow),
         pytest.param(["form_msgs"], "1", id="checks by default"),
-        pytest.param(["form_msgs"], "true", id="no checks by default"),
-        pytest.param(WHEELS, "", id="wheels"),
+        pytest.param(["form_msgs"], "true", id="no checks by default", marks=pytest.mark.slow),
+        pytest.param(WHEELS, "", id="wheels", marks=pytest.mark.slow),
     ],
 )
 def test_classes_do_what_rosidls_do(

@@ -67,7 +67,7 @@ def check(kind: Any, text: str, *, mutated: bool = False) -> None:
         assert "same-constant" in {problem.rule for problem in problems.warnings()}, shown
 
 
-@settings(quietly, max_examples=120)
+@settings(quietly, max_examples=40)
 @given(drawn=files)
 def test_texts_of_rosidls_grammar(drawn: tuple[Any, str]) -> None:
     """Both agree on everything that rosidl_parser's grammar allows."""
@@ -132,7 +132,7 @@ def changed(draw: st.DrawFn) -> tuple[Any, str]:
     return kind, text
 
 
-@settings(quietly, max_examples=60)
+@settings(quietly, max_examples=30)
 @given(drawn=changed())
 def test_changed_texts(drawn: tuple[Any, str]) -> None:
     """Both agree however such a text is changed."""
@@ -160,6 +160,7 @@ def adapted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return root
 
 
+@pytest.mark.slow
 def test_bundled_interfaces_through_idl(adapted: Path) -> None:
     """All interfaces read back from rosidl_adapter's .idl files are the same, with the same hashes."""
     packages, others = find_packages([resources.bundled_interfaces()]), find_packages([adapted])

@@ -175,18 +175,33 @@ def check(kind: str, text: str, ours: Ours, rosidl: Reference) -> None:
     assert comparable(ours.answer(kind, without), kind) == comparable(rosidl.full(kind, without), kind)
 
 
-@settings(quietly, max_examples=200)
+@settings(quietly, max_examples=50)
 @given(given_input=inputs)
 def test_lines_at_random(given_input: tuple[str, str], ours: Ours, rosidl: Reference) -> None:
     """Both agree on any lines."""
     check(*given_input, ours, rosidl)
 
 
+@pytest.mark.slow
+@settings(quietly, max_examples=200)
+@given(given_input=inputs)
+def test_many_lines_at_random(given_input: tuple[str, str], ours: Ours, rosidl: Reference) -> None:
+    check(*given_input, ours, rosidl)
+
+
 @pytest.mark.skipif(not REAL, reason="the wheels' interfaces are not installed")
-@settings(quietly, max_examples=400)
+@settings(quietly, max_examples=100)
 @given(changed=changed_files())
 def test_changed_files(changed: tuple[str, str], ours: Ours, rosidl: Reference) -> None:
     """Both agree however a real file is changed."""
+    check(*changed, ours, rosidl)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not REAL, reason="the wheels' interfaces are not installed")
+@settings(quietly, max_examples=400)
+@given(changed=changed_files())
+def test_many_changed_files(changed: tuple[str, str], ours: Ours, rosidl: Reference) -> None:
     check(*changed, ours, rosidl)
 
 

@@ -60,6 +60,7 @@ def test_mypy_is_not_told_of_folders_that_it_refuses(
     assert "run `ifgen typings` first" in asked.err
 
 
+@pytest.mark.slow
 def test_drift_edits_and_files_of_others(ifgen: Run) -> None:
     ifgen("typings", "stubs")
     path = Path("stubs/rclpy/qos.pyi")
@@ -84,6 +85,7 @@ def test_stubs_are_not_mixed_with_packages(ifgen: Run) -> None:
     assert not Path("generated").exists()
 
 
+@pytest.mark.slow
 def test_packages_that_the_project_generates_have_no_stubs(ifgen: Run) -> None:
     ifgen("typings")
     assert Path("typings/std_msgs").is_dir()

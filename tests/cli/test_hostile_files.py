@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -28,15 +29,23 @@ def huge(path: Path) -> None:
     os.truncate(path, 2**33)
 
 
-@pytest.mark.parametrize("make", [os.mkfifo, endless, huge])
-@pytest.mark.parametrize(
-    "file",
-    [
-        *(CONFIGURATION, MANIFEST, MODULE, "filters.py", "templates/message_package/interface.py.j2"),
-        *("demo_msgs/package.xml", "demo_msgs/CMakeLists.txt", "demo_msgs/msg/Other.msg"),
-        "demo_msgs/nodl/driver.nodl.yaml",
-    ],
-)
+FILES = [
+    *(CONFIGURATION, MANIFEST, MODULE, "filters.py", "templates/message_package/interface.py.j2"),
+    *("demo_msgs/package.xml", "demo_msgs/CMakeLists.txt", "demo_msgs/msg/Other.msg"),
+    "demo_msgs/nodl/driver.nodl.yaml",
+]
+
+
+def with_each_file() -> Iterator[Any]:
+    """Each file in each way: the first file as a huge one, the second as a pipe and so on are quick enough."""
+    makes = [os.mkfifo, endless, huge]
+    for number, file in enumerate(FILES):
+        for make in makes:
+            slow = [] if make is makes[number % len(makes) - 1] else [pytest.mark.slow]
+            yield pytest.param(file, make, id=f"{file}-{make.__name__}", marks=slow)
+
+
+@pytest.mark.parametrize(("file", "make"), with_each_file())
 def test_what_is_no_file_of_a_sensible_size_is_not_read(
     ifgen: Run, demo_msgs: Path, file: str, make: Callable[[Path], None]
 ) -> None:

@@ -76,9 +76,20 @@ def arrays() -> st.SearchStrategy[Any]:
     return st.tuples(made | small, layouts).map(lambda drawn: drawn[1](drawn[0]))
 
 
-@settings(max_examples=500)
+@settings(max_examples=120)
 @given(data=st.data())
 def test_any_array(classes: Classes, data: st.DataObject) -> None:
+    _take_any_array(classes, data)
+
+
+@pytest.mark.slow
+@settings(max_examples=500)
+@given(data=st.data())
+def test_many_arrays(classes: Classes, data: st.DataObject) -> None:
+    _take_any_array(classes, data)
+
+
+def _take_any_array(classes: Classes, data: st.DataObject) -> None:
     """Each array becomes the same numbers, or the error names the first that does not fit."""
     cls = classes[f"codec_msgs/msg/{data.draw(st.sampled_from(['Sequences', 'Arrays']))}"]
     field = data.draw(st.sampled_from(numeric_fields(cls)))

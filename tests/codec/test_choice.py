@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -80,6 +81,7 @@ def test_extensions_that_do_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
         assert reason() == "this release of ifgen_native has no codec: install a newer one"
 
 
+@cache
 def pythons() -> list[str]:
     """A CPython of each version that this machine has and the limited API serves, this one first."""
     folders = [Path(entry) for entry in os.get_exec_path()] + sorted(

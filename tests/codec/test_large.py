@@ -48,7 +48,13 @@ def size(codec: CodecText) -> int:
 
 
 # A limit so low that almost every message is split off and called, and each array of messages too.
-@pytest.fixture(scope="module", params=[("MOST_STEPS", 2), ("MOST_LOOPS", 0)], ids=lambda limit: limit[0])
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(("MOST_STEPS", 2), id="MOST_STEPS"),
+        pytest.param(("MOST_LOOPS", 0), id="MOST_LOOPS", marks=pytest.mark.slow),
+    ],
+)
 def cut(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Classes:
     """The classes of codec_msgs and their dependencies, as if most of them were large."""
     with pytest.MonkeyPatch.context() as patch:
@@ -83,7 +89,19 @@ def without_parts(tmp_path_factory: pytest.TempPathFactory) -> Classes:
 
 @pytest.mark.parametrize(
     "types",
-    [("float64",), ("int8", "float64"), ("string",), ("string", "int32"), ("float64[3]",), MIXED],
+    [
+        MIXED,
+        *(
+            pytest.param(types, marks=pytest.mark.slow)
+            for types in [
+                ("float64",),
+                ("int8", "float64"),
+                ("string",),
+                ("string", "int32"),
+                ("float64[3]",),
+            ]
+        ),
+    ],
     ids=lambda types: "mixed" if len(types) > 2 else "-".join(types),
 )
 def test_planning_is_linear_in_the_fields(tmp_path: Path, types: tuple[str, ...]) -> None:

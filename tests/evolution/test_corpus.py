@@ -44,7 +44,7 @@ def test_each_of_some_edits_is_named(
     for edit in all_edits(bundled):
         of_rules.setdefault(edit.rule, []).append(edit)
     chance = random.Random(15)
-    some = [edit for found in of_rules.values() for edit in chance.sample(found, 3)]
+    some = [chance.choice(found) for found in of_rules.values()]
     check(some, tmp_path, capsys)
 
 

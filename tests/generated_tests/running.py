@@ -33,7 +33,19 @@ def run(
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))}
     # On the local transport they run on virtual clocks, in domains that they do not keep: nobody may meet them there.
     del environment["ROS_AUTOMATIC_DISCOVERY_RANGE"]
-    command = [sys.executable, "-P", "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist"]
+    command = [
+        sys.executable,
+        "-P",
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:xdist",
+        "-p",
+        "no:anyio",
+    ]
     command += ["-W", "ignore:module 'sre_:DeprecationWarning"]  # the lark-parser of ROS's wheels is old
     command += ["-o", f"faulthandler_timeout={limit / 2:g}"]
     command += [f"--junitxml={report}", "--rootdir=.", "--tb=short", "--import-mode=importlib"]

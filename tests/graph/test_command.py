@@ -16,9 +16,12 @@ TRANSPORTS = [
     "local",
     pytest.param(
         "rclpy",
-        marks=pytest.mark.skipif(
-            importlib.util.find_spec("rpyutils") is None, reason="real rclpy is not installed"
-        ),
+        marks=[
+            pytest.mark.skipif(
+                importlib.util.find_spec("rpyutils") is None, reason="real rclpy is not installed"
+            ),
+            pytest.mark.slow,
+        ],
     ),
 ]
 

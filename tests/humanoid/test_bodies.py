@@ -130,14 +130,19 @@ def speed(robot: Lockstep) -> float:
     return float(np.linalg.norm((last.landed - first.landed)[:2])) / ((last.stamp - first.stamp) * 1e-9)
 
 
-BODIES = [shorter_legs(0.05), shorter_legs(0.2), offset_hips()]
-
-
-@pytest.mark.parametrize("text", BODIES, ids=["5 % shorter", "20 % shorter", "offset hips"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(shorter_legs(0.05), id="5 % shorter", marks=pytest.mark.slow),
+        pytest.param(shorter_legs(0.2), id="20 % shorter", marks=pytest.mark.slow),
+        pytest.param(offset_hips(), id="offset hips"),
+    ],
+)
 def test_walks_fast_and_where_it_plans(tmp_path: Path, text: str) -> None:
     assert speed(walk(loaded(tmp_path, text), 1.5, 0.0, 0.0)) >= 0.2
 
 
+@pytest.mark.slow
 def test_ankles_that_hardly_bend_make_it_walk_upright_and_slower(tmp_path: Path) -> None:
     text = shorter_legs(0.0).replace('range="-1.0 0.8"', 'range="-0.85 0.8"')
     model = loaded(tmp_path, text)

@@ -45,20 +45,9 @@ def run_inside(file: Path, folder: Path, *, slow: bool, limit: float) -> None:
     )
 
 
-LONG = {
-    "test_user",
-    "test_dying",
-    "test_goals",
-    "test_page_commands",
-    "test_parameters",
-    "test_stalling",
-    "test_stop",
-}  # ten seconds each on two busy cores
-SOME = [pytest.param(file, marks=pytest.mark.slow) if file.stem in LONG else file for file in FILES]
-
-
+@pytest.mark.slow
 @pytest.mark.timeout(220)
-@pytest.mark.parametrize("file", SOME, ids=lambda path: path.stem)
+@pytest.mark.parametrize("file", FILES, ids=lambda path: path.stem)
 def test_faults(file: Path, tmp_path: Path) -> None:
     """Every test in the file passes."""
     run_inside(file, tmp_path, slow=False, limit=200)

@@ -50,6 +50,7 @@ def test_walks_twelve_steps_by_sensors_and_by_the_true_state() -> None:
     assert by_truth["foot_error"] < by_sensors["foot_error"]
 
 
+@pytest.mark.slow
 def test_walks_to_a_goal() -> None:
     (walked,) = _played(("walk_to", [(1.0, 0.5, math.pi / 2), 0.0, 0], {"noise": False, "true_state": True}))
     assert walked["result"] is True
@@ -80,9 +81,8 @@ def test_a_fall_is_noticed() -> None:
     assert (pushed["problem"], pushed["falls"]) == ("the robot has fallen", 1)
 
 
-@pytest.mark.parametrize(
-    "name", ["wave", *(pytest.param(n, marks=pytest.mark.slow) for n in ("disco", "waltz"))]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["wave", "disco", "waltz"])
 def test_dances(name: str) -> None:
     (danced,) = _played(("dance", [name], {"seed": 6}))
     assert danced["dances"] == 1

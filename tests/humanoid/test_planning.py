@@ -206,7 +206,9 @@ def _dance(
     raise AssertionError("the dance does not end")
 
 
-@pytest.mark.parametrize("name", ["wave", "disco", pytest.param("waltz", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "name", ["wave", *(pytest.param(name, marks=pytest.mark.slow) for name in ("disco", "waltz"))]
+)
 def test_dances_from_standing_to_standing(model: HumanoidModel, name: str) -> None:
     robot, result, progress = _dance(model, name)
     assert not robot.fell

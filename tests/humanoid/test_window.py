@@ -176,6 +176,7 @@ def test_the_viewer_shows_robot_and_footsteps_and_follows(screen: Screen) -> Non
     assert process.wait(10) == 0
 
 
+@pytest.mark.slow
 @needs_screen
 def test_closing_the_window_ends_the_demo_and_the_summary_is_told(screen: Screen) -> None:
     with Demo(screen.name) as demo:

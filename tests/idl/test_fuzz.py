@@ -75,11 +75,24 @@ trees = st.dictionaries(
 )
 
 
+Tree = dict[tuple[str, str, str], str]
+manifests = st.one_of(st.none(), st.binary(max_size=40))
+
+
+@settings(fuzzed, max_examples=50)
+@given(tree=trees, manifest=manifests)
+def test_any_package(tree: Tree, manifest: bytes | None, tmp_path_factory: pytest.TempPathFactory) -> None:
+    _read_package(tree, manifest, tmp_path_factory)
+
+
+@pytest.mark.slow
 @settings(fuzzed, max_examples=200)
-@given(tree=trees, manifest=st.one_of(st.none(), st.binary(max_size=40)))
-def test_any_package(
-    tree: dict[tuple[str, str, str], str], manifest: bytes | None, tmp_path_factory: pytest.TempPathFactory
-) -> None:
+@given(tree=trees, manifest=manifests)
+def test_many_packages(tree: Tree, manifest: bytes | None, tmp_path_factory: pytest.TempPathFactory) -> None:
+    _read_package(tree, manifest, tmp_path_factory)
+
+
+def _read_package(tree: Tree, manifest: bytes | None, tmp_path_factory: pytest.TempPathFactory) -> None:
     """Any package folder becomes a registry or errors."""
     root = tmp_path_factory.mktemp("fuzz") / "demo_msgs"
     root.mkdir()

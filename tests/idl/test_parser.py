@@ -90,7 +90,7 @@ GARBAGE = {
 }
 
 
-@pytest.mark.parametrize("kind", ["msg", "srv"])
+@pytest.mark.parametrize("kind", ["msg", pytest.param("srv", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("text", [pytest.param(text, id=name) for name, text in GARBAGE.items()])
 def test_garbage_is_refused_in_linear_time(text: str, kind: str) -> None:
     """A megabyte of any text takes less than a second, with a short report."""

@@ -252,6 +252,20 @@ except KeyboardInterrupt:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("moment", ["process started", "importing"])
+def test_who_interrupts_a_start_sees_no_traceback(moment: str, tmp_path: Path) -> None:
+    """Python tells of what it was just importing, which is nobody's mistake."""
+    (tmp_path / "slow.py").write_text("import time; print('importing', flush=True); time.sleep(60)")
+    (tmp_path / "a.launch.xml").write_text("<launch><node exec='slow.py' output='screen'/></launch>")
+    process = start(tmp_path, "a.launch.xml")
+    wait_for(process, moment)
+    process.send_signal(signal.SIGINT)
+    out, _ = process.communicate(timeout=60)
+    assert process.returncode == 0
+    assert "Traceback" not in out
+    assert "[INFO] [slow.py-1]: process has finished cleanly" in out
+
+
 @pytest.mark.parametrize("transport", ["local", "rclpy"])
 def test_managed_nodes_start_and_say_their_states(transport: str, tmp_path: Path) -> None:
     if transport == "rclpy" and find_spec("rclpy") is None:

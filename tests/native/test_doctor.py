@@ -64,6 +64,7 @@ def test_a_middleware_that_is_not_there() -> None:
     )
 
 
+@pytest.mark.slow
 @needs_rclpy
 def test_a_sourced_distribution_that_is_not_the_installed_one() -> None:
     said = findings(ROS_DISTRO="rolling")
@@ -99,6 +100,7 @@ def test_a_distribution_that_nobody_has_tested(monkeypatch: pytest.MonkeyPatch) 
     )
 
 
+@pytest.mark.slow
 @needs_rclpy
 def test_the_codec_is_chosen() -> None:
     assert findings(IFGEN_CODEC="python")["codec"] == "in Python (slower): IFGEN_CODEC=python"
@@ -137,8 +139,8 @@ def test_no_extension(tmp_path: Path) -> None:
     "text, reason",
     [
         ("raise ImportError('of another Python')", "of another Python"),
-        ("import os; os._exit(1)", "`import rclpy` in Python says more"),
-        ("print('not what was asked')", ""),
+        pytest.param("import os; os._exit(1)", "`import rclpy` in Python says more", marks=pytest.mark.slow),
+        pytest.param("print('not what was asked')", "", marks=pytest.mark.slow),
     ],
 )
 def test_a_broken_rclpy(text: str, reason: str, tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> str:
     return os.pathsep.join((str(folder / "out"), str(ROOT / "codegen")))
 
 
-@pytest.fixture(params=["native", "python"])
+@pytest.fixture(params=["native", pytest.param("python", marks=pytest.mark.slow)])
 def environment(path: str, request: pytest.FixtureRequest) -> dict[str, str]:
     return {"PYTHONPATH": path, "IFGEN_CODEC": request.param}
 

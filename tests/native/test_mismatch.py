@@ -36,7 +36,9 @@ def meet(policy: str) -> tuple[dict[str, Any], str]:
     return seen, ran.stderr
 
 
-@pytest.mark.parametrize("policy", ["warn", pytest.param("refuse", marks=pytest.mark.slow), "adapt"])
+@pytest.mark.parametrize(
+    "policy", ["warn", *(pytest.param(name, marks=pytest.mark.slow) for name in ("refuse", "adapt"))]
+)
 def test_peers_with_other_definitions(policy: str) -> None:
     seen, warnings = meet(policy)
     actions = policy if policy == "warn" else "refuse"
@@ -80,7 +82,8 @@ def test_peers_with_other_definitions(policy: str) -> None:
             assert asked == ([[[0.1, 0.2]], [pytest.approx(0.3), True]] if LIKE == "jazzy" else [[], None])
 
 
-@pytest.mark.parametrize("many", [100, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("many", [100, 1000])
 def test_the_thread_that_watches(many: int) -> None:
     ran = run_python(str(PROGRAMS / "watching.py"), str(many), limit=250)
     assert ran.returncode == 0, ran.stdout + ran.stderr

@@ -27,7 +27,7 @@ _SPEC.loader.exec_module(harness)
 PACKAGES = ("geometry_msgs", "sensor_msgs", "std_msgs", "std_srvs", "test_msgs")
 _USES_THEM = re.compile(rf"^ *from ({'|'.join(PACKAGES)})\.", re.MULTILINE)
 SCENARIOS = [path for path in sorted(harness.SCENARIOS.glob("*.py")) if _USES_THEM.search(path.read_text())]
-SOME = {"action_goals", "comm_services", "comm_types_and_waiting", "node_parameters"}
+SOME = {"action_goals", "comm_types_and_waiting", "node_parameters"}
 
 _ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 # An invalid goal identifier fails when it is encoded, with the codec's error, not when it is first used.

@@ -25,7 +25,9 @@ def even(value, divisor):
 """
 _MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
 _REASON = f"not installed: {', '.join(_MISSING)} (Linux x86_64 only)"
-TRANSPORTS = ["local", pytest.param("rclpy", marks=pytest.mark.skipif(bool(_MISSING), reason=_REASON))]
+needs_rclpy = pytest.mark.skipif(bool(_MISSING), reason=_REASON)
+TRANSPORTS = ["local", pytest.param("rclpy", marks=needs_rclpy)]
+SLOWLY_ON_REAL = ["local", pytest.param("rclpy", marks=[needs_rclpy, pytest.mark.slow])]
 
 Ifgen = Callable[..., "subprocess.CompletedProcess[str]"]
 

@@ -20,8 +20,19 @@ VALIDATOR = Draft7Validator(schema.schema())
 
 
 @given(descriptions())
-@settings(max_examples=60)
+@settings(max_examples=15)
 def test_all_of_it_is_python(node: NodeDescription) -> None:
+    _compile_all(node)
+
+
+@pytest.mark.slow
+@given(descriptions())
+@settings(max_examples=60)
+def test_all_of_many_is_python(node: NodeDescription) -> None:
+    _compile_all(node)
+
+
+def _compile_all(node: NodeDescription) -> None:
     for path, text in render((node,)).items():
         if path.endswith(".py"):
             compile(text, path, "exec")

@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.nodes.conftest import TRANSPORTS, Ifgen
+from tests.nodes.conftest import SLOWLY_ON_REAL, TRANSPORTS, Ifgen
 
 PROGRAMS = Path(__file__).parent / "programs"
 
 
-@pytest.mark.parametrize("transport", TRANSPORTS)
+@pytest.mark.parametrize("transport", SLOWLY_ON_REAL)
 @pytest.mark.parametrize("name", ["skeletons", "parameters", "coroutines"])
 def test_what_nodes_do(name: str, transport: str, robot: Path, run_ifgen: Ifgen) -> None:
     done = run_ifgen("run", "--transport", transport, PROGRAMS / f"{name}.py", folder=robot)
@@ -27,7 +27,7 @@ def test_the_examples_of_the_format(transport: str, examples: Path, run_ifgen: I
     assert (done.stdout, done.returncode) == ((PROGRAMS / "examples.txt").read_text(), 0), done.stderr
 
 
-@pytest.mark.parametrize("transport", TRANSPORTS)
+@pytest.mark.parametrize("transport", SLOWLY_ON_REAL)
 def test_a_node_starts_as_module_and_as_file_and_reads_its_parameter_file(
     transport: str, robot: Path, run_ifgen: Ifgen
 ) -> None:

@@ -62,6 +62,7 @@ def test_what_lies_where(workspace: Path) -> None:
     run("ifgen", "generate", "--check", cwd=workspace)
 
 
+@pytest.mark.slow
 def test_colcon_builds_messages_first(workspace: Path) -> None:
     description = workspace / "nodes/robot/nodl/driver.nodl.yaml"
     description.write_text(description.read_text().replace("std_msgs/msg/String", "robot_msgs/msg/Speed"))

@@ -30,13 +30,9 @@ from ifgen.observing.node_observation import Seen, SeenParameter, choose
 from .conftest import load_from
 
 WALKER = Path(__file__).parent / "walker.py"
-TRANSPORTS = [
-    "local",
-    pytest.param(
-        "rclpy",
-        marks=pytest.mark.skipif(importlib.util.find_spec("rclpy") is None, reason="there is no real rclpy"),
-    ),
-]
+needs_rclpy = pytest.mark.skipif(importlib.util.find_spec("rclpy") is None, reason="there is no real rclpy")
+TRANSPORTS = ["local", pytest.param("rclpy", marks=needs_rclpy)]
+SLOWLY_ON_REAL = ["local", pytest.param("rclpy", marks=[needs_rclpy, pytest.mark.slow])]
 
 
 def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
@@ -123,7 +119,7 @@ def test_a_generated_node(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> No
     }
 
 
-@pytest.mark.parametrize("transport", TRANSPORTS)
+@pytest.mark.parametrize("transport", SLOWLY_ON_REAL)
 def test_one_of_several_nodes_and_files(tmp_path: Path, transport: str) -> None:
     """NODE selects one; the file is not overwritten; the style of a lifecycle node is found."""
     programs = ["--", str(WALKER), ":", str(WALKER), "--lifecycle"]
@@ -180,13 +176,27 @@ parameters = st.sampled_from(list(of_types)).flatmap(
 names = st.one_of(texts, st.sampled_from(["/n/a", "/a", "/a/b", "/n/_x", "/1", "a//b"]))
 
 
-@settings(max_examples=100)
+@settings(max_examples=25)
 @given(
     st.lists(parameters, max_size=4, unique_by=lambda p: p.name),
     st.lists(st.tuples(names, st.sampled_from(Category)), max_size=5),
 )
 @example([SeenParameter("a", "string", "x\x85y", "\x85", False, "\u2028", None, 0)], [])
 def test_whatever_is_seen_can_be_read(seen: list[SeenParameter], names: list[tuple[str, Category]]) -> None:
+    _can_be_read(seen, names)
+
+
+@pytest.mark.slow
+@settings(max_examples=100)
+@given(
+    st.lists(parameters, max_size=4, unique_by=lambda p: p.name),
+    st.lists(st.tuples(names, st.sampled_from(Category)), max_size=5),
+)
+def test_much_that_is_seen_can_be_read(seen: list[SeenParameter], names: list[tuple[str, Category]]) -> None:
+    _can_be_read(seen, names)
+
+
+def _can_be_read(seen: list[SeenParameter], names: list[tuple[str, Category]]) -> None:
     """Values are read back exactly, in both languages; what cannot be expressed is left out."""
     types = {
         "msg": "std_msgs/msg/String",

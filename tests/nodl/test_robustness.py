@@ -76,9 +76,20 @@ def test_any_tree(tree: dict[str, object]) -> None:
     load_text(json.dumps({"nodl_version": 2, **tree}, default=str, skipkeys=True), "json")
 
 
-@settings(max_examples=150)
+@settings(max_examples=30)
 @given(st.data())
 def test_mutated_documents(data: st.DataObject) -> None:
+    _load_mutated_text(data)
+
+
+@pytest.mark.slow
+@settings(max_examples=150)
+@given(st.data())
+def test_many_mutated_documents(data: st.DataObject) -> None:
+    _load_mutated_text(data)
+
+
+def _load_mutated_text(data: st.DataObject) -> None:
     """Pieces of documents left out, doubled, moved and replaced by others."""
     text = data.draw(st.sampled_from(VALID))
     for _ in range(data.draw(st.integers(1, 3))):
@@ -111,9 +122,23 @@ def test_mutated_documents(data: st.DataObject) -> None:
     load_text(text)
 
 
-@settings(max_examples=100)
-@given(st.sampled_from(VALID), st.lists(st.integers(0, 60), min_size=1, max_size=3), trees)
+places = st.lists(st.integers(0, 60), min_size=1, max_size=3)
+
+
+@settings(max_examples=20)
+@given(st.sampled_from(VALID), places, trees)
 def test_mutated_trees(text: str, where: list[int], tree: object) -> None:
+    _load_mutated_tree(text, where, tree)
+
+
+@pytest.mark.slow
+@settings(max_examples=100)
+@given(st.sampled_from(VALID), places, trees)
+def test_many_mutated_trees(text: str, where: list[int], tree: object) -> None:
+    _load_mutated_tree(text, where, tree)
+
+
+def _load_mutated_tree(text: str, where: list[int], tree: object) -> None:
     """A value somewhere in a valid document is replaced by another one."""
     root = yaml.safe_load(text)
     node = root
@@ -158,7 +183,12 @@ BOMBS = {
 }
 
 
-@pytest.mark.parametrize("name", BOMBS)
+LONG_ONES = {"anchors", "many keys", "same key"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in LONG_ONES else []) for name in BOMBS]
+)
 def test_bombs_end_quickly(name: str) -> None:
     """Each is refused within seconds, with a report that fits on a screen or two."""
     started = time.process_time()

@@ -110,9 +110,20 @@ def places(tree: Any) -> Iterator[tuple[Any, Any]]:
         yield from places(value)
 
 
-@settings(max_examples=150)
+@settings(max_examples=40)
 @given(st.data())
 def test_mutated_documents(data: st.DataObject) -> None:
+    _agree_on_mutated(data)
+
+
+@pytest.mark.slow
+@settings(max_examples=150)
+@given(st.data())
+def test_many_mutated_documents(data: st.DataObject) -> None:
+    _agree_on_mutated(data)
+
+
+def _agree_on_mutated(data: st.DataObject) -> None:
     """A key left out, added or with another value; each way the reader and the schema agree."""
     tree = copy.deepcopy(data.draw(st.sampled_from(TREES)))
     holder, key = data.draw(st.sampled_from(list(places(tree))))

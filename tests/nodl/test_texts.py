@@ -69,7 +69,7 @@ def libyaml(text: str) -> Any:
 
 
 READERS = [
-    python,
+    pytest.param(python, marks=pytest.mark.slow),
     pytest.param(
         libyaml, marks=pytest.mark.skipif(not hasattr(yaml, "CSafeLoader"), reason="PyYAML without libyaml")
     ),

@@ -54,7 +54,7 @@ TOLD = """\
 *assert *Point(*==*PoseStamped(*"""
 
 
-@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_rclpy)])
+@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=(needs_rclpy, pytest.mark.slow))])
 def test_fields_that_differ(pytester: pytest.Pytester, transport: str) -> None:
     pytester.makepyfile(TESTS)
     result = pytester.runpytest_subprocess("--transport", transport, "-p", "no:randomly")

@@ -63,7 +63,7 @@ def test_context_ends():
 """
 
 
-@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_rclpy)])
+@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=(needs_rclpy, pytest.mark.slow))])
 def test_collecting(pytester: pytest.Pytester, transport: str) -> None:
     pytester.makepyfile(COLLECTING)
     result = pytester.runpytest_subprocess("--transport", transport)

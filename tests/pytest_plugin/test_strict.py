@@ -224,7 +224,7 @@ def test_definitions(ros_node, policy):
 """
 
 
-@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_rclpy)])
+@pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=(needs_rclpy, pytest.mark.slow))])
 def test_definitions_that_differ_unless_they_are_adapted(pytester: pytest.Pytester, transport: str) -> None:
     pytester.makepyfile(DIFFERING)
     result = pytester.runpytest_subprocess(f"--transport={transport}", "--ros-strict")

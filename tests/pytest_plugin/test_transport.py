@@ -32,7 +32,7 @@ def test_local_is_ours_even_for_what_conftests_import(pytester: pytest.Pytester)
 
 
 @needs_rclpy
-@pytest.mark.parametrize("transport", ["rclpy", "auto"])
+@pytest.mark.parametrize("transport", ["rclpy", pytest.param("auto", marks=pytest.mark.slow)])
 def test_real_one(pytester: pytest.Pytester, transport: str) -> None:
     pytester.makepyfile(WHICH)
     result = pytester.runpytest_subprocess("-s", f"--transport={transport}")
@@ -72,6 +72,7 @@ def test_both_runs_twice_and_reports_the_worst(pytester: pytest.Pytester) -> Non
     assert result.stdout.str().count("1 passed in") == result.stdout.str().count("1 failed in") == 1
 
 
+@pytest.mark.slow
 def test_both_where_there_is_no_real_one(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(WHICH)
     pytester.makeconftest("import rclpy  # also where nothing but the local transport has one")
@@ -103,6 +104,7 @@ def test_nothing_happens_unless_asked(pytester: pytest.Pytester) -> None:
     result.stdout.no_fnmatch_line("*transport*")
 
 
+@pytest.mark.slow
 def test_what_the_project_brings_wins_over_our_examples(pytester: pytest.Pytester) -> None:
     pytester.mkpydir("teleop").joinpath("__init__.py").write_text("SPEED = 3")
     pytester.makepyprojecttoml('[tool.pytest.ini_options]\ntransport = "local"\npythonpath = ["."]')
@@ -141,12 +143,14 @@ def test_hint_where_a_transport_is_missing(pytester: pytest.Pytester) -> None:
     )
 
 
+@pytest.mark.slow
 def test_option_of_the_same_name_in_a_project_stays_its_own(pytester: pytest.Pytester) -> None:
     pytester.makeconftest("def pytest_addoption(parser):\n    parser.addoption('--transport', default='tcp')")
     pytester.makepyfile("def test_own(request):\n    assert request.config.getoption('transport') == 'udp'")
     pytester.runpytest_subprocess("--transport=udp").assert_outcomes(passed=1)
 
 
+@pytest.mark.slow
 def test_workers_of_xdist_take_part(pytester: pytest.Pytester) -> None:
     pytest.importorskip("xdist")
     pytester.makepyfile(WHICH + "    assert 'underlay' in rclpy.__file__\n")

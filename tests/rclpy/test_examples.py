@@ -20,17 +20,12 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 LIMIT = 60.0  # [s] for one conversation
 MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
 
-local_and_real = pytest.mark.parametrize(
-    "transport",
-    [
-        "local",
-        pytest.param(
-            "rclpy",
-            marks=pytest.mark.skipif(
-                bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Linux x86_64 only)"
-            ),
-        ),
-    ],
+needs_rclpy = pytest.mark.skipif(
+    bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Linux x86_64 only)"
+)
+local_and_real = pytest.mark.parametrize("transport", ["local", pytest.param("rclpy", marks=needs_rclpy)])
+local_and_slowly_real = pytest.mark.parametrize(
+    "transport", ["local", pytest.param("rclpy", marks=[needs_rclpy, pytest.mark.slow])]
 )
 
 
@@ -70,13 +65,13 @@ def converse(transport: str, *words: str) -> list[str]:
     return [line for line in messages(output) if "waiting again" not in line]
 
 
-@local_and_real
+@local_and_slowly_real
 def test_services(transport: str) -> None:
     lines = converse(transport, "services/server.py", ":", "services/client.py", "41", "1")
     assert lines == ["add_two_ints_server: 41 + 1 = 42", "add_two_ints_client: 41 + 1 = 42"]
 
 
-@local_and_real
+@local_and_slowly_real
 def test_action(transport: str) -> None:
     lines = converse(transport, "action/fibonacci_server.py", ":", "action/fibonacci_client.py", "5")
     *before, last = [line for line in lines if line.startswith("fibonacci_client: ")]
@@ -90,7 +85,7 @@ def test_action(transport: str) -> None:
     ]
 
 
-@local_and_real
+@local_and_slowly_real
 def test_action_that_is_cancelled(transport: str) -> None:
     lines = converse(transport, "action/fibonacci_server.py", ":", "action/fibonacci_client.py", "40", "2")
     assert "fibonacci_client: so far [0, 1, 1, 2]" in lines

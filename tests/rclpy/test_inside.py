@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.inside_underlay import run
+from tests.inside_underlay import has_slow_tests, run
 
 HERE = Path(__file__).parent
 
@@ -18,7 +18,19 @@ PARTS = sorted(
 )
 # Both codecs, where bytes of other definitions are read.
 ALSO_IN_PYTHON = {"mismatched_topics", "test_mismatch_services"}
-RUNS = [pytest.param(part, "", id=part.stem) for part in PARTS]
+# Several seconds each; `contract` has something of each of these.
+LONG = {
+    "test_adapting_services_across",
+    "test_lockstep",
+    "test_mismatch_across",
+    "test_network_faults",
+    "test_pairs",
+    "test_shared_memory",
+}
+RUNS = [
+    pytest.param(part, "", id=part.stem, marks=[pytest.mark.slow] if part.stem in LONG else [])
+    for part in PARTS
+]
 RUNS += [
     pytest.param(part, "python", id=f"{part.stem}python", marks=pytest.mark.slow)
     for part in PARTS
@@ -28,8 +40,15 @@ RUNS += [
 
 @pytest.mark.parametrize(("part", "codec"), RUNS)
 def test_part(part: Path, codec: str, tmp_path: Path) -> None:
-    """Every test in it passes."""
+    """Every test in it passes, but for the slow ones."""
     run(part, tmp_path, IFGEN_CODEC=codec)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", [part for part in PARTS if has_slow_tests(part)], ids=lambda part: part.stem)
+def test_more_of_part(part: Path, tmp_path: Path) -> None:
+    """Every slow test in it passes."""
+    run(part, tmp_path, slow=True)
 
 
 @pytest.mark.slow

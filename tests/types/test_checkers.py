@@ -118,7 +118,7 @@ def typings(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, ...]:
     return folder, ROOT / "codegen"
 
 
-@pytest.mark.parametrize("checker", [mypy, pyright])
+@pytest.mark.parametrize("checker", [pytest.param(mypy, marks=pytest.mark.slow), pyright])
 @pytest.mark.parametrize("where", ["sources", pytest.param("stubs", marks=pytest.mark.slow)])
 def test_what_strict_checkers_refuse(
     checker: Callable[[tuple[Path, ...], Path], Found],

@@ -6,6 +6,7 @@ import ast
 import os
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,12 @@ from ifgen.generator_py.stubs import derive
 from ifgen.generator_py.stubs.package import of_rclpy
 
 ROOT = Path(__file__).parent.parent.parent
-RCLPY = of_rclpy(ROOT / "codegen" / "underlay")
+
+
+@pytest.fixture(scope="module")
+def rclpy() -> Mapping[str, str]:
+    """The stubs of rclpy, by their paths."""
+    return of_rclpy(ROOT / "codegen" / "underlay")
 
 
 def stub_of(source: str) -> str:
@@ -56,20 +62,20 @@ def test_what_a_stub_shows(source: str, stub: str) -> None:
     assert stub_of(source) == stub
 
 
-def test_no_module_accepts_any_name() -> None:
-    assert not [name for name, text in RCLPY.items() if "def __getattr__" in text]
+def test_no_module_accepts_any_name(rclpy: Mapping[str, str]) -> None:
+    assert not [name for name, text in rclpy.items() if "def __getattr__" in text]
 
 
-def test_the_stubs_of_rclpy_need_no_other_package_of_ours() -> None:
-    assert len(RCLPY) > 60
-    assert not [name for name, text in RCLPY.items() if "rmw_local" in text]
+def test_the_stubs_of_rclpy_need_no_other_package_of_ours(rclpy: Mapping[str, str]) -> None:
+    assert len(rclpy) > 60
+    assert not [name for name, text in rclpy.items() if "rmw_local" in text]
 
 
-def test_the_attributes_of_public_classes_have_types() -> None:
+def test_the_attributes_of_public_classes_have_types(rclpy: Mapping[str, str]) -> None:
     """An attribute whose type nobody wrote, and that cannot be told, is Any in the stubs alone."""
     untold = [
         f"{name}: {line.strip()}"
-        for name, text in RCLPY.items()
+        for name, text in rclpy.items()
         if not name.startswith(("impl/", "_"))
         for line in text.splitlines()
         if line.startswith("    ") and line.endswith(": Any")
@@ -78,8 +84,8 @@ def test_the_attributes_of_public_classes_have_types() -> None:
 
 
 @pytest.mark.slow
-def test_the_stubs_themselves_satisfy_mypy(tmp_path: Path) -> None:
-    for name, text in RCLPY.items():
+def test_the_stubs_themselves_satisfy_mypy(rclpy: Mapping[str, str], tmp_path: Path) -> None:
+    for name, text in rclpy.items():
         path = tmp_path / "rclpy" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)

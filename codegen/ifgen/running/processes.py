@@ -17,7 +17,8 @@ from ifgen.running.ending import INTERRUPTED, PATIENCE
 from ifgen.running.program import Program
 
 _STEP = 0.2  # [s]
-_NOTE = "IFGEN_DISMISSED"  # names a file that exists once ifgen itself interrupts the program
+NOTE = "IFGEN_DISMISSED"
+"""The environment variable that names a file, which exists once ifgen itself interrupts the program."""
 NextSignal = Callable[[float], tuple[int, bool] | None]
 """Waits for a signal for the given seconds. Returns its number, and True if the terminal sent it to all."""
 
@@ -26,7 +27,7 @@ _FROM_TERMINAL = 0x80  # SI_KERNEL: Linux says so of Ctrl-C, which the terminal 
 
 def take_note() -> Path | None:
     """Return where a file is once the last of several programs has ended; None: this one is alone."""
-    note = os.environ.pop(_NOTE, None)
+    note = os.environ.pop(NOTE, None)
     return None if note is None else Path(note)
 
 
@@ -36,12 +37,28 @@ def let_signals_come() -> None:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGCHLD})
 
 
+@contextmanager
+def signals_wait() -> Generator[None]:
+    """Start programs in this block whose signals wait until they call `let_signals_come`.
+
+    Python, interrupted while it starts, would tell of what it was just importing.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def run(programs: Sequence[Program]) -> int:
     """Run programs on real rclpy until the last one ends; returns the worst of their exit codes."""
     command = [sys.executable, "-m", "ifgen", "run", "--transport", "rclpy"]
     with tempfile.TemporaryDirectory(prefix="ifgen-run-") as folder:
         note = Path(folder) / "dismissed"
-        environment = {**os.environ, _NOTE: str(note)}
+        environment = {**os.environ, NOTE: str(note)}
         with _signals() as next_signal:
             processes = [subprocess.Popen([*command, *p.words], env=environment) for p in programs]
             dismissed = _wait(processes, note, next_signal)

@@ -33,6 +33,7 @@ class ObstacleMapper(ObstacleMapperBase):
         self._body = model.body
         self._viewpoints = Viewpoints(model)
         self._map = FloorMap(values.half_size, values.resolution)
+        self._newest = -1  # stamp of the newest image in it
         self._lens: Lens | None = None
         self._joints: JointState | None = None
         self._base: Any = None  # the newest transform from odom to base_link
@@ -77,6 +78,9 @@ class ObstacleMapper(ObstacleMapperBase):
 
     def _look(self, stamp: int, message: Image, lens: Lens, joints: JointState, base: Any) -> None:
         """Add an image to the map. Raises ValueError if it cannot be read."""
+        if stamp < self._newest:  # time starts again, and perhaps among other obstacles
+            self._map = FloorMap(self.parameters.half_size, self.parameters.resolution)
+        self._newest = stamp
         picture = read_image(message)
         angles = messages.read_joint_states(joints, self._body).position
         if picture.shape[:2] != (lens.height, lens.width):

@@ -66,11 +66,11 @@ class World:
             )
         )
 
-    def show(self) -> None:
-        """A grey floor, and something red that stands in the middle of the picture."""
+    def show(self, stamp: int = STAMP, left: int = 70) -> None:
+        """A grey floor, and something red that stands on it, 20 columns wide."""
         picture = np.full((120, 160, 3), 90, dtype=np.uint8)
-        picture[70:110, 70:90] = (200, 30, 30)
-        self._images.publish(image(messages.header(STAMP, "camera"), picture))
+        picture[70:110, left : left + 20] = (200, 30, 30)
+        self._images.publish(image(messages.header(stamp, "camera"), picture))
 
 
 def test_what_is_red_is_mapped_where_its_lower_edge_is(ros: Any) -> None:
@@ -88,6 +88,27 @@ def test_what_is_red_is_mapped_where_its_lower_edge_is(ros: Any) -> None:
     count = len(world.maps)
     world.show()
     assert not ros.spins_until(lambda: len(world.maps) > count + 1, 0.2)  # nothing new, or once more
+
+
+def test_time_that_starts_again_begins_with_an_empty_map(ros: Any) -> None:
+    node = ros.start(ObstacleMapper)
+    world = World(ros)
+    maps: list[np.ndarray] = []
+    for stamp, left in ((STAMP, 20), (STAMP // 2, 120)):
+        count = len(world.maps)
+        ros.deliver(
+            lambda stamp=stamp: world.tell(stamp),
+            lambda stamp=stamp: node._base and messages.nanoseconds(node._base.header.stamp) == stamp,
+            "pose",
+        )
+        ros.deliver(
+            lambda stamp=stamp, left=left: world.show(stamp, left),
+            lambda count=count: len(world.maps) > count,
+            "message on /map",
+        )
+        maps.append(read_occupancy_grid(world.maps[-1]).occupied())
+    assert maps[0][:, 1].min() > 0.2  # to the left only
+    assert maps[1][:, 1].max() < -0.2  # to the right only
 
 
 def test_an_image_without_a_pose_of_its_time_is_not_mapped(ros: Any) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import jinja2
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen.config.customization import Customization
@@ -129,9 +130,20 @@ TEMPLATES = st.recursive(
 )
 
 
-@settings(max_examples=300)
+@settings(max_examples=80)
 @given(TEMPLATES, TEMPLATES)
 def test_templates_of_any_form(text: str, other: str) -> None:
+    _agree_with_jinja(text, other)
+
+
+@pytest.mark.slow
+@settings(max_examples=300)
+@given(TEMPLATES, TEMPLATES)
+def test_many_templates_of_any_form(text: str, other: str) -> None:
+    _agree_with_jinja(text, other)
+
+
+def _agree_with_jinja(text: str, other: str) -> None:
     found = check_text(text, {"u.j2": other})
     if not found.errors:
         _environment_for(Customization()).parse(text)

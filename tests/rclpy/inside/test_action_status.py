@@ -55,6 +55,7 @@ def test_the_bytes_are_those_of_the_message(data: st.DataObject) -> None:
         assert array.to_bytes() == expected
 
 
+@pytest.mark.slow
 @given(st.lists(GOAL, max_size=20), st.data())
 @example([(bytes(16), 0, 1), (bytes(16), 0, 2), (b"\1" + bytes(15), 0, 3)], None)
 def test_no_bytes_do_harm(goals: list[tuple[bytes, int, int]], data: st.DataObject | None) -> None:

@@ -174,6 +174,7 @@ def test_a_future_given_up_is_forgotten() -> None:
     assert scene.finish(scene.goal().get_result_async()).status == 4
 
 
+@pytest.mark.slow
 def test_memory_is_flat() -> None:
     """Thousands of goals leave nothing once their results have expired, nor do rejected ones."""
     scene = Scene(

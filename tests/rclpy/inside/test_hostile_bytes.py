@@ -32,7 +32,7 @@ from tests.rclpy.inside.contract.processes import Pair, Process, connected
 POINT = "demo_msgs/msg/Point"
 Mine = class_from_text(POINT, f"float32 x\nPart[] parts\n{'=' * 80}\nMSG: demo_msgs/Part\nstring name")
 CASES = settings(
-    max_examples=int(os.environ.get("IFGEN_CASES", "25")),
+    max_examples=int(os.environ.get("IFGEN_CASES", "10")),
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from rmw_local.qos import (
     AUTOMATIC,
@@ -265,8 +265,20 @@ endpoints = st.builds(
 )
 
 
+@settings(max_examples=25)
 @given(endpoints)
 def test_every_entity_survives_its_token(entity: Entity) -> None:
+    _survives_its_token(entity)
+
+
+@pytest.mark.slow
+@settings(max_examples=100)
+@given(endpoints)
+def test_many_entities_survive_their_tokens(entity: Entity) -> None:
+    _survives_its_token(entity)
+
+
+def _survives_its_token(entity: Entity) -> None:
     text = tokens.write(42, "beef", entity)
     read = tokens.read(text)
     assert (read.kind, read.node_id, read.entity_id) == (entity.kind, entity.node_id, entity.entity_id)

@@ -123,7 +123,12 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("what", HOSTILE)
+LONG = {"a long list", "a macro that calls itself"}
+
+
+@pytest.mark.parametrize(
+    "what", [pytest.param(what, marks=[pytest.mark.slow] if what in LONG else []) for what in HOSTILE]
+)
 def test_hostile_files_end_soon(tmp_path: Path, what: str) -> None:
     """The limit is on CPU time, so that a busy machine does not fail; the worst file takes a tenth of it."""
     started = time.process_time()
@@ -132,7 +137,14 @@ def test_hostile_files_end_soon(tmp_path: Path, what: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "piece", ["a\n", "x()", "a(b c)\n", '"', "[[", "#[[", "(", "\\", '\\"', "set(a ", "a(\\\n"]
+    "piece",
+    [
+        *("a\n", '"', "[[", "("),
+        *(
+            pytest.param(piece, marks=pytest.mark.slow)
+            for piece in ("x()", "a(b c)\n", "#[[", "\\", '\\"', "set(a ", "a(\\\n")
+        ),
+    ],
 )
 def test_text_is_taken_apart_in_linear_time(piece: str) -> None:
     def cost(count: int) -> float:

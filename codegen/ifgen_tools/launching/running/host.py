@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import logging
 import shutil
 import signal
@@ -29,7 +30,7 @@ from ifgen_tools.launching.reading.texts import parse
 from ifgen_tools.launching.running.loop import Loop, TimedCall
 from ifgen_tools.launching.running.output import LogHandler, Output
 from ifgen_tools.launching.running.process import Warden
-from ifgen_tools.launching.running.supervision import Supervision
+from ifgen_tools.launching.running.supervision import RUN, Supervision
 
 _MAX_DEPTH: Final = 150
 """Entities within entities; more of them are files that include each other."""
@@ -52,6 +53,7 @@ class LaunchHost:
         self._depth = 0
         self._interruptions = 0
         self._files: tempfile.TemporaryDirectory[str] | None = None
+        self._file_numbers = itertools.count()
         self._lifecycle: Any = None
 
     def run(self, description: LaunchDescriptionEntity) -> int:
@@ -263,7 +265,7 @@ class LaunchHost:
     def _command(self, found: packages.Executable) -> list[str]:
         if not found.is_python:
             return list(found.words)
-        return [sys.executable, "-m", "ifgen", "run", "--transport", self.transport, *found.words]
+        return [*RUN, "--transport", self.transport, *found.words]
 
     def parameter_file(self, parameters: Mapping[str, Any], node: str) -> str:
         """Write parameters of a node to a file that is there as long as the launch is."""
@@ -274,13 +276,15 @@ class LaunchHost:
 
     def text_file(self, text: str) -> str:
         """Write a text to a file that is there as long as the launch is."""
+        path = self.new_file("text.yaml")
+        Path(path).write_text(text, encoding="utf-8")
+        return path
+
+    def new_file(self, name: str) -> str:
+        """Return the path of a file that nobody else has; what is written there goes with the launch."""
         if self._files is None:
             self._files = tempfile.TemporaryDirectory(prefix="ifgen-launch-")
-        with tempfile.NamedTemporaryFile(
-            "w", suffix=".yaml", dir=self._files.name, delete=False, encoding="utf-8"
-        ) as file:
-            file.write(text)
-        return file.name
+        return str(Path(self._files.name) / f"{next(self._file_numbers)}-{name}")
 
     def fill(self, text: str, path: str) -> str:
         """Return the text of a file with its substitutions performed. Raises LaunchError."""

@@ -13,7 +13,7 @@ from lifecycle_msgs.srv import ChangeState
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
-_STEP: Final = 0.5  # [s] between looks whether the launch is over
+_STEP: Final = 0.2  # [s] between looks whether the launch is over
 _HISTORY: Final = 10
 
 
@@ -36,6 +36,7 @@ class Lifecycle:
         self._lock = threading.Lock()
         self._clients: dict[str, Any] = {}
         self._is_closed = threading.Event()
+        self._changes: list[threading.Thread] = []
         self._thread = threading.Thread(target=self._spin, daemon=True)
         self._thread.start()
 
@@ -50,11 +51,15 @@ class Lifecycle:
 
     def change(self, node_name: str, transition_id: int) -> None:
         """Ask a node for a transition, as soon as it is there."""
-        threading.Thread(target=self._change, args=(node_name, transition_id), daemon=True).start()
+        change = threading.Thread(target=self._change, args=(node_name, transition_id), daemon=True)
+        self._changes.append(change)
+        change.start()
 
     def close(self) -> None:
         """Leave the graph."""
         self._is_closed.set()
+        for change in self._changes:
+            change.join(1.0)  # they use the node
         self._executor.shutdown(timeout_sec=1.0)
         self._node.destroy_node()
         rclpy.shutdown(context=self._context)

@@ -8,10 +8,11 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any, Final
 
+from ifgen.running import processes
 from launch.launch_context import ProcessToStart
 
 _CHUNK: Final = 65536
@@ -34,24 +35,30 @@ class Process:
         post: Callable[[Callable[[], None]], None],
         on_output: Callable[[int, bytes], None],
         on_end: Callable[[int], None],
+        note: str = "",
     ) -> None:
-        """Start it. Raises OSError."""
+        """Start it. Raises OSError.
+
+        :param note: of a program of `ifgen run`: a file that will be there once nothing is to be said of an
+            interruption any more.
+        """
         self._post = post
         self._on_output = on_output
         self._room = threading.Semaphore(_MAX_WAITING)
         masters, pipes = _terminals() if plan.emulate_tty else ([], [subprocess.PIPE, subprocess.PIPE])
         try:
             # Unbuffered: the lines of Python programs come when they are printed.
-            self._popen = subprocess.Popen(
-                " ".join(plan.command) if plan.shell else list(plan.command),
-                stdin=subprocess.PIPE,
-                stdout=pipes[0],
-                stderr=pipes[1],
-                cwd=plan.cwd,
-                env={"PYTHONUNBUFFERED": "1", **plan.env},
-                shell=plan.shell,
-                start_new_session=True,
-            )
+            with processes.signals_wait() if note else nullcontext():
+                self._popen = subprocess.Popen(
+                    " ".join(plan.command) if plan.shell else list(plan.command),
+                    stdin=subprocess.PIPE,
+                    stdout=pipes[0],
+                    stderr=pipes[1],
+                    cwd=plan.cwd,
+                    env={"PYTHONUNBUFFERED": "1", **plan.env, **({processes.NOTE: note} if note else {})},
+                    shell=plan.shell,
+                    start_new_session=True,
+                )
         except BaseException:
             for master in masters:
                 os.close(master)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import signal
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from launch.actions import ExecuteProcess
@@ -16,6 +18,8 @@ if TYPE_CHECKING:
     from ifgen_tools.launching.running.host import LaunchHost
     from ifgen_tools.launching.running.loop import TimedCall
 
+RUN: Final = (sys.executable, "-m", "ifgen", "run")
+"""The beginning of the command of each program in Python."""
 _LONGEST_LINE: Final = 1 << 16
 _SIGKILL: Final = getattr(signal, "SIGKILL", 9)
 _ASKED: Final = {-signal.SIGINT, 128 + signal.SIGINT, -signal.SIGTERM, 128 + signal.SIGTERM}
@@ -36,12 +40,14 @@ class Supervision:
         self._rest = {1: b"", 2: b""}
         self._retries = 0
         self._timers: list[TimedCall] = []
+        is_program = tuple(plan.command[:4]) == RUN and not plan.shell
+        self._note = host.new_file("dismissed") if is_program else ""
 
     def start(self) -> None:
         """Start the process. Raises LaunchError."""
         plan = self.plan
         try:
-            self._process = Process(plan, self._host.loop.post, self._on_output, self._on_end)
+            self._process = Process(plan, self._host.loop.post, self._on_output, self._on_end, self._note)
         except OSError as error:
             reason = error.strerror or str(error)
             message = (
@@ -72,6 +78,8 @@ class Supervision:
         plan = self.plan
         if not quietly:
             self._host.output.log("INFO", plan.name, f"sending signal 'SIGINT' to process[{plan.name}]")
+        if self._note:
+            Path(self._note).touch()
         self._process.signal(signal.SIGINT)
         self._escalate(plan.sigterm_timeout, plan.sigterm_timeout, "SIGINT", "SIGTERM", signal.SIGTERM)
         both = plan.sigterm_timeout + plan.sigkill_timeout

@@ -109,6 +109,7 @@ def test_nobody_serves_it(ifgen: Run, counter: Counter) -> None:
     assert "waiting for the action '/coun'... did you mean '/count'?" in done.err
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("counter")
 def test_a_second_interruption_stops_at_once(ifgen: Run, counter: Counter) -> None:
     """Nobody spins the server, so it neither accepts the goal nor cancels it."""

@@ -117,6 +117,7 @@ def test_delay_needs_a_header(ifgen: Run, node: Node) -> None:
     assert done.err == "error: std_msgs/msg/Float64 has no header, so '/speed' has no times to compare with\n"
 
 
+@pytest.mark.slow
 def test_bandwidth_when_time_begins_anew(
     ifgen: Run, node: Node, ends: Callable[[int], None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -127,6 +128,7 @@ def test_bandwidth_when_time_begins_anew(
     assert (done.code, done.out) == (2, "Subscribed to [/speed]\nWARNING: time is reset!\n")
 
 
+@pytest.mark.slow
 def test_delay_without_new_messages(ifgen: Run, node: Node, ends: Callable[[int], None]) -> None:
     ends(2)
     lines = ifgen("topic", "delay", "/point").out.splitlines()

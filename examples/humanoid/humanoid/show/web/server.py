@@ -149,6 +149,7 @@ class _Server(ThreadingHTTPServer):
     """A server with a thread for each client; it does not report clients that disconnect early."""
 
     daemon_threads = True
+    request_queue_size = 128  # of a full queue, the system takes no visitor before a second or more
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         if not isinstance(sys.exc_info()[1], ConnectionError):
