@@ -11,13 +11,15 @@ from __future__ import annotations
 
 import math
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
 from _table import Row, is_quick, show
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "examples/humanoid"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # for the tests' bodies
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "examples/humanoid"))
 
 from humanoid.data import Mode
 from humanoid.kinematics import poses
@@ -28,9 +30,12 @@ from humanoid.planning import dance
 from humanoid.planning.choreography import DANCES
 from humanoid.planning.footsteps import plan_footsteps
 from humanoid.robot import model
+from humanoid.robot.external import load_external
 from humanoid.simulation.sim import QUIET, Noise, Simulator
 from humanoid.trials import trials
 from humanoid.trials.harness import Lockstep
+
+from tests.humanoid.bodies import offset_hips, shorter_legs
 
 MODEL = model.load()
 NOISE = Noise()
@@ -51,6 +56,7 @@ def main() -> None:
         head,
         repeating,
         speed,
+        bodies,
     )
     show(measures, is_quick(__doc__))
 
@@ -139,7 +145,7 @@ def pushes(quick: bool) -> list[Row]:
     """The strongest push that the robot survives, by direction."""
     rows = []
     strengths = (4, 8, 12, 16, 20)
-    for name, asked, walk in (("standing", "4 N s", False), ("walking, two phases", "3 N s", True)):
+    for name, asked, walk in (("standing", "20 N s", False), ("walking, two phases", "3 N s", True)):
         survived = {}
         for direction in range(0, 360, 90 if quick else 45):
             limit = 0
@@ -296,6 +302,36 @@ def speed(quick: bool) -> list[Row]:
             f"{whole:.1f} x real time",
         ),
     ]
+
+
+def bodies(quick: bool) -> list[Row]:
+    """The bodies of the tests, which are not ours, by `--model`'s way."""
+    texts = {
+        "ours": shorter_legs(0.0),
+        "legs 5 % shorter": shorter_legs(0.05),
+        "legs 20 % shorter": shorter_legs(0.2),
+        "offset hips, arms of 7 joints, no neck": offset_hips(),
+    }
+    rows = []
+    for name, text in texts.items():
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "robot.xml"
+            path.write_text(text, encoding="utf-8")
+            body = load_external(path)
+        speeds, errors, falls = [], [], 0
+        for seed in range(1 if quick else 3):
+            robot = Lockstep(body, seed=seed, noise=NOISE)
+            robot.run(0.5)
+            robot.go_to((2.0, 0.0, 0.0))
+            # The first and the last step are short.
+            first, last = robot.touchdowns[1], robot.touchdowns[-2]
+            way = float(np.linalg.norm((last.landed - first.landed)[:2]))
+            speeds.append(way / ((last.stamp - first.stamp) * 1e-9))
+            errors.append(robot.foot_error()[0])
+            falls += robot.fell
+        found = f"{falls} falls, {min(speeds):.2f} m/s, {max(errors) * 1e3:.1f} mm rms"
+        rows.append((f"body: {name}, worst of {len(speeds)}", ">= 0.2 m/s, <= 20 mm rms", found))
+    return rows
 
 
 if __name__ == "__main__":

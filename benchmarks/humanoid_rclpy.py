@@ -1,6 +1,6 @@
 """The humanoid on real rclpy: a walk to a goal and a cancelled one, in lockstep and in real time.
 
-python benchmarks/humanoid_rclpy.py [--quick]     one walk of each instead of three
+python benchmarks/humanoid_rclpy.py [--quick]     one walk of each instead of three, and ten in real time
 
 `ifgen demo --scenario walk`, for which physics, motion, limbs and tasks have a process each there. Real time
 is real only on a machine that has nothing else to do.
@@ -9,19 +9,16 @@ is real only on a machine that has nothing else to do.
 from __future__ import annotations
 
 import importlib.util
-import os
-import re
 import subprocess
 import sys
 
+from _demo import Run, play, span
 from _table import Row, is_quick, show
 
-DOMAIN = "93"
-MODES = {
-    "local transport, in lockstep": [],
-    "real rclpy, in lockstep": ["--transport", "rclpy"],
-    "real rclpy, in real time": ["--transport", "rclpy", "--realtime"],
-}
+LOCKSTEP = {"local transport, in lockstep": (), "real rclpy, in lockstep": ("--transport", "rclpy")}
+WALK = ("--scenario", "walk")
+REAL_TIME = (*WALK, "--transport", "rclpy", "--realtime")
+BUSY = "while True: pass"
 
 
 def main() -> None:
@@ -29,35 +26,50 @@ def main() -> None:
     if importlib.util.find_spec("rpyutils") is None:
         print("real rclpy is not installed")
         return
-    show([walks], is_quick(__doc__))
+    show([lockstep, real_time, busy], is_quick(__doc__))
 
 
-def walks(quick: bool) -> list[Row]:
-    """The modes in turn, several times."""
-    runs = [(mode, play(words)) for _ in range(1 if quick else 3) for mode, words in MODES.items()]
+def lockstep(quick: bool) -> list[Row]:
+    """The transports in turn, several times."""
+    played = [
+        (mode, play(*WALK, *words)) for _ in range(1 if quick else 3) for mode, words in LOCKSTEP.items()
+    ]
     rows: list[Row] = []
-    for mode in MODES:
-        summaries = [summary for played, summary in runs if played == mode]
-        asked = "no fall, real time" if "in real time" in mode else "no fall"
-        rows.append((f"{len(summaries)} walks, {mode}", asked, "; ".join(map(words_of, summaries))))
+    for mode in LOCKSTEP:
+        runs = [run for one, run in played if one == mode]
+        rows.append((f"{len(runs)} walks, {mode}", "no fall", "; ".join(map(words_of, runs))))
     return rows
 
 
-def play(words: list[str]) -> dict[str, str]:
-    """The summary of the demo, by row."""
-    environment = {
-        **os.environ,
-        "ROS_DOMAIN_ID": DOMAIN,
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-    }
-    command = [sys.executable, "-m", "ifgen", "demo", "--headless", "--scenario", "walk", *words]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=600, check=False)
-    rows = re.findall(r"^  (\S.*?)  +(\S.*)$", done.stdout.partition("\n\n")[2], re.MULTILINE)
-    return dict(rows) or {"outcome": done.stderr.strip()}
+def real_time(quick: bool) -> list[Row]:
+    """Walks in real time."""
+    runs = [play(*REAL_TIME) for _ in range(1 if quick else 10)]
+    what = f"{len(runs)} walks, real rclpy, in real time"
+    return [(what, "9 of 10 reach the goal", count(runs))]
 
 
-def words_of(summary: dict[str, str]) -> str:
+def busy(quick: bool) -> list[Row]:
+    """The same while another program takes the time of a processor."""
+    with subprocess.Popen([sys.executable, "-c", BUSY]) as other:
+        try:
+            runs = [play(*REAL_TIME) for _ in range(1 if quick else 10)]
+        finally:
+            other.kill()
+    return [(f"{len(runs)} of them with one core kept busy", "go on after HOLDING", count(runs))]
+
+
+def count(runs: list[Run]) -> str:
+    """How many reached the goal, the ranges of their errors, and what kept the others from it."""
+    reached = [run for run in runs if run.rows["outcome"] == "done"]
+    words = [f"{len(reached)}, {sum(int(run.number('falls') or 0) for run in runs)} falls"]
+    words += [f"{row} {values} mm" for row in ("foot error", "goal error") if (values := span(reached, row))]
+    words += [run.rows["outcome"] for run in runs if run not in reached]
+    return "; ".join(words)
+
+
+def words_of(run: Run) -> str:
     """A run in a few words."""
+    summary = run.rows
     if summary["outcome"] != "done":
         return summary["outcome"]
     return (

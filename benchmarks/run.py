@@ -1,14 +1,17 @@
 """Runs every benchmark and writes docs/benchmarks.md: `make bench`.
 
-python benchmarks/run.py [NAME...]     only these, such as `codec generate`; nothing is written then
+python benchmarks/run.py [NAME...]            only these, such as `codec generate`; nothing is written
+python benchmarks/run.py --replace NAME...    only these; their sections in the report are replaced
 """
 
 from __future__ import annotations
 
 import os
 import platform
+import re
 import subprocess
 import sys
+from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -25,14 +28,17 @@ The figures are from one run on one machine, with the peers measured side by sid
 
 def main() -> None:
     """Run the scripts, show what they print, and keep it."""
+    names = [word for word in sys.argv[1:] if word != "--replace"]
     scripts = [path for path in sorted(HERE.glob("[!_]*.py")) if path.name != "run.py"]
-    chosen = [path for path in scripts if not sys.argv[1:] or path.stem in sys.argv[1:]]
+    chosen = [path for path in scripts if not names or path.stem in names]
     sections = {script.name: section(script) for script in chosen}
     if chosen == scripts:
         REPORT.write_text(
             "\n".join([INTRODUCTION, machine(), *filter(None, sections.values())]), encoding="utf-8"
         )
         print(f"written to {REPORT.relative_to(HERE.parent)}")
+    elif "--replace" in sys.argv[1:]:
+        REPORT.write_text(replaced(REPORT.read_text(encoding="utf-8"), sections.values()), encoding="utf-8")
     if failed := [name for name, text in sections.items() if text is None]:
         sys.exit(f"failed: {', '.join(failed)}")
 
@@ -44,9 +50,23 @@ def section(script: Path) -> str | None:
     # Processes that a benchmark starts keep their byte code, as for users.
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONDONTWRITEBYTECODE"}
     command = [sys.executable, str(script)]
+    load = f"begun at load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
     done = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=False)
     print(done.stdout)
-    return None if done.returncode else f"## {title}\n\n`python benchmarks/{script.name}`\n\n{done.stdout}"
+    if done.returncode:
+        return None
+    return f"## {title}\n\n`python benchmarks/{script.name}`, {load}\n\n{done.stdout}"
+
+
+def replaced(report: str, sections: Iterable[str | None]) -> str:
+    """The report with sections in place of those of the same script; new ones come last."""
+    head, *others = re.split(r"^(?=## )", report, flags=re.MULTILINE)
+    by_script = {_script(text): text for text in [*others, *filter(None, sections)]}
+    return "\n".join(text.rstrip("\n") + "\n" for text in (head, *by_script.values()))
+
+
+def _script(section: str) -> str:
+    return section.partition("`python benchmarks/")[2].partition("`")[0]
 
 
 def machine() -> str:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from .support import Classes, generate
+from .support import Classes, folder_of_all, generate
 
 
 @pytest.fixture(scope="session")
 def classes(tmp_path_factory: pytest.TempPathFactory) -> Classes:
     """Every bundled message class and those of codec_msgs, by type name."""
-    return generate(tmp_path_factory.mktemp("generated"))
+    return generate(folder_of_all(tmp_path_factory))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import os
 import pkgutil
 import sys
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import ifgen
+import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 OWN_INTERFACES = Path(__file__).with_name("codec_msgs")
@@ -21,6 +23,12 @@ class Classes(dict[str, type[Any]]):
 
     def __repr__(self) -> str:
         return "classes"
+
+
+def folder_of_all(factory: pytest.TempPathFactory) -> Path:
+    """A folder that all processes of this run share: what one of them generates, the others find up to date."""
+    own = factory.getbasetemp()
+    return (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "codec"
 
 
 def generate(output: Path, *paths: Path) -> Classes:

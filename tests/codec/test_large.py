@@ -48,7 +48,13 @@ def size(codec: CodecText) -> int:
 
 
 # A limit so low that almost every message is split off and called, and each array of messages too.
-@pytest.fixture(scope="module", params=[("MOST_STEPS", 2), ("MOST_LOOPS", 0)], ids=lambda limit: limit[0])
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(("MOST_STEPS", 2), id="MOST_STEPS"),
+        pytest.param(("MOST_LOOPS", 0), id="MOST_LOOPS", marks=pytest.mark.slow),
+    ],
+)
 def cut(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Classes:
     """The classes of codec_msgs and their dependencies, as if most of them were large."""
     with pytest.MonkeyPatch.context() as patch:

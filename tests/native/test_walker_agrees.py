@@ -26,14 +26,14 @@ from ifgen_runtime.type_support.register import _decoder  # noqa: E402
 
 from ..codec.big_endian import big_endian  # noqa: E402
 from ..codec.strategies import messages  # noqa: E402
-from ..codec.support import Classes, generate  # noqa: E402
+from ..codec.support import Classes, folder_of_all, generate  # noqa: E402
 
 WORDS = [0, 1, 2, 3, 0xFFFFFFFF, 0x80000000, 0x7FFFFFFF, 0x40000000, 0x10000001, 0xD800, 0xDC00, 0x10000]
 
 
 @pytest.fixture(scope="module")
 def classes(tmp_path_factory: pytest.TempPathFactory) -> Classes:
-    return generate(tmp_path_factory.mktemp("generated"))
+    return generate(folder_of_all(tmp_path_factory))
 
 
 @cache

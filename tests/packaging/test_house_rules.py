@@ -111,6 +111,8 @@ def unexplained(text: str) -> Iterator[int]:
     lines = text.splitlines()
     if any(line.startswith("# Late imports: ") for line in lines):
         return
+    if not any(line.lstrip() != line and line.lstrip().startswith(("import ", "from ")) for line in lines):
+        return  # which is quicker than to parse it
     explained = -1
     for node in late_imports(ast.parse(text)):
         own = lines[node.lineno - 1 : node.end_lineno]

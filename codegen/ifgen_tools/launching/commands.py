@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 # Late imports: what a launch needs, and `launch` itself, which is found once the transport is chosen.
 
 _TRANSPORTS: dict[str, Literal["local", "rclpy", "auto"]] = {
-    f"transport:={name}": name for name in ("local", "rclpy", "auto")
+    "transport:=local": "local",
+    "transport:=rclpy": "rclpy",
+    "transport:=auto": "auto",
 }
 """Arguments that choose the transport, for launch files that declare one of this name."""
 
@@ -82,7 +84,8 @@ def launch(
     output = settle().output
     source = click.get_current_context().get_parameter_source("transport")
     if source is not click.core.ParameterSource.COMMANDLINE:
-        transport = next((_TRANSPORTS[word] for word in given if word in _TRANSPORTS), transport)
+        for word in given:
+            transport = _TRANSPORTS.get(word, transport)
     chosen = _activate(transport, output)
     path = _path(paths, output)
     from launch import LaunchContext
