@@ -145,7 +145,7 @@ def pushes(quick: bool) -> list[Row]:
     """The strongest push that the robot survives, by direction."""
     rows = []
     strengths = (4, 8, 12, 16, 20)
-    for name, asked, walk in (("standing", "4 N s", False), ("walking, two phases", "3 N s", True)):
+    for name, asked, walk in (("standing", "20 N s", False), ("walking, two phases", "3 N s", True)):
         survived = {}
         for direction in range(0, 360, 90 if quick else 45):
             limit = 0

@@ -64,7 +64,7 @@ def test_a_node_dies_in_the_middle_of_a_step(model: HumanoidModel, node: str, wh
     for seed, moment in enumerate((2.35, 2.05, 4.2)):
         robot = _walking(model, seed, moment)
         robot.dead.add(node)
-        assert _both_feet_down_after(robot) <= 1.5
+        assert _both_feet_down_after(robot) <= 1.0
         reason = robot.standby.reason if node == "whole_body_controller" else robot.controller.state().reason
         assert why in reason
         if node != "whole_body_controller":
@@ -101,7 +101,7 @@ def test_holding_ends_when_somebody_says_so(model: HumanoidModel) -> None:
 def test_emergency_stop_beats_everything(model: HumanoidModel) -> None:
     robot = _walking(model, 2, 2.4)
     robot.controller.emergency_stop(EmergencyStop(True, Cause.OPERATOR, "/teleop", "red button"))
-    assert _both_feet_down_after(robot) <= 1.5
+    assert _both_feet_down_after(robot) <= 1.0
     state = robot.controller.state()
     assert state.mode is Mode.EMERGENCY_STOP
     assert state.reason == "/teleop: red button"

@@ -145,15 +145,16 @@ def test_cancel_joins_the_feet(model: HumanoidModel) -> None:
     ("direction", "momentum"),
     [(90, 4)]
     + [pytest.param(angle, 4, marks=pytest.mark.slow) for angle in (0, 180, 270)]
-    + [pytest.param(angle, 16, marks=pytest.mark.slow) for angle in range(0, 360, 30)],
+    + [pytest.param(angle, 16, marks=pytest.mark.slow) for angle in range(0, 360, 30)]
+    + [pytest.param(angle, 20, marks=pytest.mark.slow) for angle in range(0, 360, 45)],
 )
 def test_pushed_while_standing(model: HumanoidModel, direction: int, momentum: float) -> None:
     robot = Lockstep(model, seed=direction, noise=NOISE)
     robot.run(0.5)
     push(robot, direction, momentum)
-    robot.run(3.0)
+    robot.run(4.0)
     assert not robot.fell
-    assert np.linalg.norm(robot.controller.error) < 0.01
+    assert np.linalg.norm(robot.controller.error) < (0.01 if momentum < 20 else 0.02)
 
 
 def _pushed(

@@ -50,10 +50,17 @@ class DcmFeedback:
         )
 
 
+def usable(sole: SoleGeometry, parameters: GaitParameters) -> SoleGeometry:
+    """The part of a sole that the ZMP may use."""
+    along, across = sole.half_length - parameters.edge_along, sole.half_width - parameters.edge_across
+    return SoleGeometry(sole.centre, along, across)
+
+
 def limits(sole: SoleGeometry, parameters: GaitParameters) -> tuple[Array, Array]:
     """The corners (2,) of the part of a sole that the ZMP may use, in the sole's frame."""
-    along, across = sole.half_length - parameters.edge_along, sole.half_width - parameters.edge_across
-    return np.array([sole.centre - along, -across]), np.array([sole.centre + along, across])
+    part = usable(sole, parameters)
+    along, across = part.half_length, part.half_width
+    return np.array([part.centre - along, -across]), np.array([part.centre + along, across])
 
 
 def distribute(

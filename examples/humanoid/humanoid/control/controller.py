@@ -6,6 +6,8 @@ model for kinematics and gravity, as a real robot's controller has robot_descrip
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..data import (
@@ -34,6 +36,7 @@ from .posture import level, standing
 from .reference import GaitParameters, Sample
 from .stepping import Stepping
 from .support import support_polygon
+from .trunk import Trunk
 from .upper_body import UpperBody
 
 _FALLEN_HEIGHT = 0.68  # of base_link, as a share of the legs' length
@@ -73,6 +76,7 @@ class WholeBodyController:
         self._joints = standing(model, self.stepping.feet, self.parameters)[0]
         self._command = self._joints.copy()
         self._upper = UpperBody(model)
+        self._trunk = Trunk(model)
         self._fallen_height = _FALLEN_HEIGHT * model.body.leg_length
         self._started = False
         self._reason = ""
@@ -244,13 +248,20 @@ class WholeBodyController:
         height = parameters.com_height - self._upper.squat
         zmp = self._feedback.zmp(sample.zmp, self.error)
         load = balance.distribute(zmp, soles, stance, self.model.sole, parameters)
-        force = effort.wanted_force(state, load.zmp, self._omega, height)
-        motion = effort.Motion(state, force, stepping.accelerations())
+        targets = stepping.targets()
+        heading = rotation_z((targets[0][0][2] + targets[1][0][2]) / 2)
+        axes = heading[:2, :2]
+        beyond = axes.T @ (zmp - load.zmp) if stance is None else np.zeros(2)
+        made_up = axes @ self._trunk.turn(beyond, self._elapsed)
+        force = effort.wanted_force(state, load.zmp + made_up, self._omega, height)
+        turning = self._trunk.accelerations(heading, state.base[1])
+        motion = effort.Motion(state, force, stepping.accelerations(), turning)
         load = balance.distribute(motion.pressure_point(force), soles, stance, self.model.sole, parameters)
         self._zmp = load.zmp
         torque = motion.torques(force, load)
         way = _JOINT_SPEED * self._elapsed
-        joints = np.clip(self._inverse_kinematics(sample, height), self._joints - way, self._joints + way)
+        wanted = self._inverse_kinematics(sample, targets, heading, height)
+        joints = np.clip(wanted, self._joints - way, self._joints + way)
         velocity = (joints - self._joints) / self._elapsed
         self._joints = joints
         if sample.last_of_swing:
@@ -259,15 +270,20 @@ class WholeBodyController:
         # way.
         return joints + (torque + self.model.kv * velocity) / self.model.kp
 
-    def _inverse_kinematics(self, sample: Sample, height: float) -> Array:
-        """Joint positions that put the soles and the centre of mass where the reference has them."""
-        targets = self.stepping.targets()
-        rotation = self._level(rotation_z((targets[0][0][2] + targets[1][0][2]) / 2))
+    def _inverse_kinematics(
+        self, sample: Sample, targets: Sequence[tuple[Array, float]], heading: Array, height: float
+    ) -> Array:
+        """Joint positions that put soles (planar poses, heights) and centre of mass where they should be.
+
+        `heading` is the rotation of a pelvis that is level.
+        """
+        rotation = self._kept(heading @ rotation_vector(np.array([*self._trunk.lean, 0.0])))
         self._planned.set_posture(np.zeros(3), quaternion_of(rotation), self._joints)
         com, axis = self.stepping.com, rotation_z(targets[0][0][2])[:2, 0]
         ahead = [float((foot[:2] - com) @ axis) for foot, _ in targets]
         speed = float(self.stepping.velocity @ axis)
-        joints = self._upper.move(self._joints, ahead, speed, self._elapsed)
+        upright = self._upper.move(self._trunk.straight(self._joints), ahead, speed, self._elapsed)
+        joints = self._trunk.bent(upright)
         pelvis = (np.array([com[0], com[1], height]) - self._planned.com, rotation)
         for side, (foot, lifted) in enumerate(targets):
             swinging = sample.swing is not None and sample.swing.leg.side == side
@@ -276,10 +292,10 @@ class WholeBodyController:
             joints[leg] = self._legs.solve(side, base, level(foot, lifted), self._joints[leg])
         return joints
 
-    def _level(self, rotation: Array) -> Array:
-        """The rotation of the pelvis, turned against the measured tilt."""
+    def _kept(self, rotation: Array) -> Array:
+        """A wanted rotation of the pelvis, turned against the tilt that it is measured to have beyond it."""
         up = self._state.base[1][:, 2]
-        tilt = self.parameters.tilt_gain * cross(up, np.array([0.0, 0.0, 1.0]))
+        tilt = self.parameters.tilt_gain * cross(up, rotation[:, 2])
         return rotation_vector(tilt) @ rotation
 
     def _towards_measured(self, pelvis: tuple[Array, Array], share: float) -> tuple[Array, Array]:

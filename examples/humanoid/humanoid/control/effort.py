@@ -1,6 +1,6 @@
 """Which torques move the body as the reference does: the inverse dynamics of the whole robot.
 
-Wanted are the acceleration of the centre of mass, of both feet, and none of the pelvis' rotation. From these
+Wanted are the acceleration of the centre of mass, of both feet, and of the trunk that turns. From these
 follow the accelerations of all joints, and from them what the ground must push with and the torques. A leg
 that swings throws the body the other way; here the stance leg expects that.
 """
@@ -37,23 +37,27 @@ def wanted_force(state: RobotState, zmp: Array, omega: float, height: float) -> 
 class Motion:
     """Accelerations of all joints that give the ground's force and the feet's accelerations."""
 
-    def __init__(self, state: RobotState, force: Array, feet: Sequence[Array]) -> None:
-        """Solve for the ground's force (3,) and the accelerations (6,) of both soles, linear then angular."""
+    def __init__(self, state: RobotState, force: Array, feet: Sequence[Array], turning: Array) -> None:
+        """Solve for the ground's force (3,) and the accelerations (6,) of both soles, linear then angular.
+
+        `turning` (nv,) are the accelerations of the pelvis' rotation and of the joints of waist, head and
+        arms, which are decided already.
+        """
         self._state = state
         mass, bias = state.mass_matrix, state.generalized_bias
         legs = state.model.dof[_LEGS]
         matrix, wanted = np.zeros((15, 15)), np.zeros(15)
         matrix[:3, :3], matrix[:3, 3:] = mass[:3, :3], mass[:3, legs]
-        wanted[:3] = force - bias[:3]
+        wanted[:3] = force - bias[:3] - mass[:3] @ turning
         for side, acceleration in enumerate(feet):
             jacobian, drift = state.sole_jacobian(side)
             rows = slice(3 + 6 * side, 9 + 6 * side)
             matrix[rows, :3], matrix[rows, 3:] = jacobian[:, :3], jacobian[:, legs]
-            wanted[rows] = acceleration - drift
+            wanted[rows] = acceleration - drift - jacobian @ turning
         square = matrix.T @ matrix
         square[np.diag_indices(15)] += _SINGULAR**2
         solved = np.linalg.solve(square, matrix.T @ wanted)
-        acceleration = np.zeros(mass.shape[0])
+        acceleration = turning.copy()
         acceleration[:3] = solved[:3]
         acceleration[legs] = np.clip(solved[3:], -_MOST, _MOST)
         self._torque = mass @ acceleration + bias

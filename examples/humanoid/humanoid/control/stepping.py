@@ -12,9 +12,10 @@ from ..data import Footstep, FootstepPlan, Leg, Stance, Support
 from ..robot.model import SoleGeometry
 from ..spatial import Array, from_frame, to_frame, wrap
 from . import swing
-from .balance import limits
+from .balance import limits, usable
 from .pace import SHORTEST_TIME
 from .reference import GaitParameters, Reference, Sample, middle, swinging_reference, walking_reference
+from .support import beyond, support_polygon
 
 _ADJUSTABLE = 0.9  # share of a swing until which its landing may still move
 _ONLY_OUTWARDS = 0.5  # share of a swing after which its landing no longer comes nearer to the other foot
@@ -24,8 +25,10 @@ _NARROWEST = 0.11  # metres sideways between the soles
 # its end.
 _FALLING_OUT, _FALLING_IN, _FALLING_ALONG, _SOON = 0.035, 0.06, 0.10, 0.25
 _HURRY, _SHORTEST = 0.45, 0.22  # share of the remaining time that a hurried swing takes, and its minimum [s]
+_CATCH_TIME = 0.27  # seconds of a swing that catches a robot that stood
 _BRIEF = 0.06  # seconds of double support while a falling robot takes its steps sooner
-_LOST = 0.01  # metres of the DCM beyond the reach of both soles: it will not return without a step
+_LOST = 0.01  # metres of the DCM outside the soles: it will not return without a step
+_UNMOVED = 0.03  # metres of its error at which that need not be looked for
 _LOST_LANDED = 0.04  # the same for a robot that has just come to a stand: it sways, and stays if it can
 _LEASH = 0.04  # metres between the centre of mass and its reference
 _LANDING_TIME = 0.3  # seconds until an interrupted swing touches the ground
@@ -37,6 +40,7 @@ class Stepping:
     def __init__(self, parameters: GaitParameters, omega: float, period: float, sole: SoleGeometry) -> None:
         self._parameters, self._omega, self._period = parameters, omega, period
         self._low, self._high = limits(sole, parameters)
+        self._usable = usable(sole, parameters)
         self.plan_id = 0
         self.index = 0  # of the present or next step
         self.taken = 0
@@ -174,13 +178,23 @@ class Stepping:
             if self._double_left > _BRIEF and self._falling(self.steps[0].leg, error):
                 self._rebuild(_BRIEF)
             return
+        if math.hypot(error[0], error[1]) < _UNMOVED:
+            return
         dcm = self.sample.dcm + error
-        left, right = (to_frame(foot, dcm) for foot in self.feet)
-        outside = {Leg.LEFT: left[1] - self._high[1], Leg.RIGHT: self._low[1] - right[1]}
-        along = min(max(self._low[0] - x, x - self._high[0]) for x in (left[0], right[0]))
-        leg = max(outside, key=lambda leg: outside[leg])
-        if max(along, outside[leg]) > (_LOST_LANDED if self._landed else _LOST):
-            self._catch(leg)
+        if beyond(dcm, support_polygon(self.feet, self._usable)) > (_LOST_LANDED if self._landed else _LOST):
+            self._catch(min(Leg, key=lambda leg: self._lost_by(leg, dcm)))
+
+    def _lost_by(self, leg: Leg, dcm: Array) -> float:
+        """How far the DCM (2,) will be outside the soles when this leg has taken a quick step [m].
+
+        Until then it runs away from the other sole, whose nearest point the ZMP takes.
+        """
+        stance = self.feet[leg.other.side]
+        point = to_frame(stance, dcm)
+        zmp = np.clip(point, self._low, self._high)
+        there = zmp + (point - zmp) * math.exp(self._omega * (_BRIEF + _CATCH_TIME))
+        landing = np.array([*swing.within_reach(there, leg.sign), 0.0])
+        return beyond(there, support_polygon([np.zeros(3), landing], self._usable))
 
     def targets(self) -> list[tuple[Array, float]]:
         """Planar pose and height of both soles at this tick."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -21,6 +22,17 @@ def support_polygon(soles: Iterable[Array], geometry: SoleGeometry) -> Array:
     ]
     points = sorted(set(corners))
     return np.array([*_half(points), *_half(points[::-1])]).reshape(-1, 2)
+
+
+def beyond(point: Array, polygon: Array) -> float:
+    """How far a point (2,) is outside a convex polygon (n, 2), counter-clockwise; negative inside [m]."""
+    corners = polygon.tolist()
+    x, y = point.tolist()
+    most = -math.inf
+    for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1], strict=True):
+        out = ((by - ay) * (x - ax) - (bx - ax) * (y - ay)) / math.hypot(bx - ax, by - ay)
+        most = max(most, out)
+    return most
 
 
 def _half(points: list[tuple[float, float]]) -> list[tuple[float, float]]:

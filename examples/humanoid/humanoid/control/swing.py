@@ -60,10 +60,15 @@ def adjusted_landing(
             shift[axis] = (turned[axis] - limit) * growth
     if not shift.any():
         return planned
-    x, y = to_frame(stance, planned) + shift
+    return from_frame(stance, within_reach(to_frame(stance, planned) + shift, sign))
+
+
+def within_reach(landing: Array, sign: int) -> Array:
+    """The nearest point (2,) to a landing (2,) that a leg reaches, both in the frame of the stance foot."""
+    x, y = landing
     x = min(max(x, _FORWARD[0]), _FORWARD[1])
     y = sign * min(max(sign * y, _OUTWARD[0]), _OUTWARD[1])
-    return from_frame(stance, np.array([x, y]))
+    return np.array([x, y])
 
 
 def moved(landing: Array, target: Array, phase: float, period: float) -> Array:
