@@ -6,9 +6,9 @@ VENV := .venv
 REFERENCE := reference
 BIN := $(VENV)/bin
 TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
-# Tests that the codec in C and the generated functions must pass alike: `make test` runs them with each.
-BOTH_CODECS := $(addprefix tests/,$(addprefix codec/test_,$(addsuffix .py,hostile_input large refusals round_trip views wire)) \
-	runtime/test_message_classes.py against_rosidl/test_classes.py)
+# Tests that the codec in C and the generated functions must pass alike: `make test` runs them with each, the longest first.
+BOTH_CODECS := $(addprefix tests/,against_rosidl/test_classes.py \
+	$(addprefix codec/test_,$(addsuffix .py,hostile_input large refusals round_trip views wire)) runtime/test_message_classes.py)
 # The packages that nodes import besides rclpy.
 LIBRARIES := $(patsubst codegen/libraries/%/__init__.py,%,$(wildcard codegen/libraries/*/__init__.py))
 CASES := 1000000

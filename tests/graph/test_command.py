@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from ifgen.cli.main import main
 
 ROOT = Path(__file__).parents[2]
 TALKER = ROOT / "examples/topics/publisher.py"
@@ -31,15 +32,16 @@ def ifgen(*words: str | Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
 
 
-def test_descriptions_are_drawn_in_the_format_of_the_file(tmp_path: Path) -> None:
+def test_descriptions_are_drawn_in_the_format_of_the_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for suffix, beginning in ((".svg", "<svg "), (".dot", "digraph"), (".mmd", "flowchart")):
         file = tmp_path / f"graph{suffix}"
-        done = ifgen("graph", ROOT / "interfaces", "-o", file)
-        assert done.returncode == 0, done.stderr
+        assert main(["graph", str(ROOT / "interfaces"), "-o", str(file)]) == 0
         text = file.read_text()
         assert text.startswith(beginning)
         assert "/whole_body_controller" in text
-        assert "nodes, " in done.stdout
+        assert "nodes, " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("transport", TRANSPORTS)
@@ -54,16 +56,14 @@ def test_programs_are_drawn_while_they_run(transport: str) -> None:
     assert "open\n" not in done.stdout.replace("classDef open", "")
 
 
-def test_mistakes_are_told(tmp_path: Path) -> None:
+def test_mistakes_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     nothing = ifgen("graph", "--running", "--transport", "local")
     assert nothing.returncode == 2
     assert "no node is running" in nothing.stderr
-    empty = ifgen("graph", ROOT / "interfaces/std_msgs")
-    assert empty.returncode == 2
-    assert "there is no description of a node" in empty.stderr
-    both = ifgen("graph", ROOT / "interfaces", "--run", str(TALKER))
-    assert both.returncode == 2
-    assert "--running and --run take no PATH" in both.stderr
-    missing = ifgen("graph", "--run", str(tmp_path / "none.py"))
-    assert missing.returncode == 2
-    assert "there is no file" in missing.stderr
+    for words, expected in (
+        ([ROOT / "interfaces/std_msgs"], "there is no description of a node"),
+        ([ROOT / "interfaces", "--run", TALKER], "--running and --run take no PATH"),
+        (["--run", tmp_path / "none.py"], "there is no file"),
+    ):
+        assert main(["graph", *map(str, words)]) == 2
+        assert expected in capsys.readouterr().err

@@ -130,13 +130,11 @@ def speed(robot: Lockstep) -> float:
     return float(np.linalg.norm((last.landed - first.landed)[:2])) / ((last.stamp - first.stamp) * 1e-9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
-    [
-        pytest.param(shorter_legs(0.05), id="5 % shorter", marks=pytest.mark.slow),
-        pytest.param(shorter_legs(0.2), id="20 % shorter", marks=pytest.mark.slow),
-        pytest.param(offset_hips(), id="offset hips"),
-    ],
+    [shorter_legs(0.05), shorter_legs(0.2), offset_hips()],
+    ids=["5 % shorter", "20 % shorter", "offset hips"],
 )
 def test_walks_fast_and_where_it_plans(tmp_path: Path, text: str) -> None:
     assert speed(walk(loaded(tmp_path, text), 1.5, 0.0, 0.0)) >= 0.2

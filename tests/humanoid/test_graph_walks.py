@@ -88,7 +88,8 @@ def test_dances(name: str) -> None:
     assert danced["dances"] == 1
 
 
-@pytest.mark.parametrize("count", [60, pytest.param(1000, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [60, 1000])
 def test_answers_what_it_can_reach(count: int) -> None:
     (asked,) = _played(("kinematics", [count, 20], {}))
     for chain, (solved, claimed) in asked["result"].items():

@@ -47,6 +47,19 @@ def test_it_walks_with_a_process_for_each_node(transport: str, short: Path) -> N
 
 
 @pytest.mark.slow
+def test_it_sees_where_there_are_obstacles(tmp_path: Path) -> None:
+    scenario = tmp_path / "behind.yaml"
+    scenario.write_text(
+        SHORT.replace("walk 0.5 0.1 0.3", "wait 1, walk 2.2 0 0")
+        + "\nhumanoid_simulator: {ros__parameters: {obstacles: [red_box 1.2 0]}}\n"
+    )
+    done = launched("--transport", "local", str(FILE), f"scenario:={scenario}")
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = dict(re.findall(r"^\[director-\d+\]   (\S.*?)  +(\S.*)$", done.stdout, re.MULTILINE))
+    assert (rows["outcome"], rows["touches"]) == ("done", "0 (obstacles: 1)")
+
+
+@pytest.mark.slow
 def test_the_exit_code_is_that_of_the_director(tmp_path: Path) -> None:
     scenario = tmp_path / "far.yaml"
     scenario.write_text(SHORT.replace("walk 0.5 0.1 0.3", "dance polka"))

@@ -22,28 +22,31 @@ import ifgen
 sys.path.insert(0, sys.argv[1])
 ifgen.activate("local")
 from humanoid.trials.obstacle_trials import walks
-print(json.dumps([dataclasses.asdict(scene) for scene in walks(json.loads(sys.argv[2]))]))
+found = [walks(seeds, moving=moving) for seeds, moving in zip(json.loads(sys.argv[2]), (False, True))]
+print(json.dumps([[dataclasses.asdict(scene) for scene in scenes] for scenes in found]))
 """
 
 
-def walked(seeds: list[int]) -> list[dict[str, Any]]:
-    """The walks in the scenes of these seeds."""
+def walked(standing: list[int], moving: list[int]) -> list[list[dict[str, Any]]]:
+    """The walks in the scenes of these seeds: where all stays as it is, and where an obstacle is moved."""
     try:
         rendering.choose_gl()
     except rendering.RenderingError as error:
         pytest.skip(str(error))
-    command = [sys.executable, "-c", PROGRAM, LIBRARY, json.dumps(seeds)]
+    command = [sys.executable, "-c", PROGRAM, LIBRARY, json.dumps([standing, moving])]
     done = subprocess.run(command, capture_output=True, text=True, timeout=3000, check=False)
     assert done.returncode == 0, done.stderr
-    scenes: list[dict[str, Any]] = json.loads(done.stdout.splitlines()[-1])
+    scenes: list[list[dict[str, Any]]] = json.loads(done.stdout.splitlines()[-1])
     return scenes
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_it_walks_round_obstacles_that_it_sees() -> None:
-    for scene in walked([0, 13]):
+    standing, moving = walked([0, 9], [6, 13, 100])
+    for scene in standing + moving:
         assert (scene["reached"], scene["falls"], scene["touches"]) == (True, 0, 0), scene
         assert scene["obstacles"] == 5
         assert scene["error"] < 0.06
         assert scene["length"] > 4.0
+    assert all(scene["moved"] for scene in moving)  # on its way, in front of it

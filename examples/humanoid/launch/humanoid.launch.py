@@ -21,7 +21,8 @@ ARGUMENTS = {
     "scenario": ("all", f"A scenario, a .yaml file of yours, or {IDLE}: stand, and wait for others"),
     "transport": ("auto", "local: without ROS; rclpy: the real one, which `ros2 launch` always takes"),
     "nodes": (crew.ALL, "The nodes to start, with commas"),
-    "without": (",".join(crew.EXTRA), "Nodes to leave out, with commas"),
+    "without": ("", "Nodes to leave out, with commas"),
+    "camera": ("auto", "Whether it sees: true, false, or auto: where the scenario has obstacles"),
     "model": ("", "Your own humanoid, as MJCF; empty: ours"),
     "joint_map": ("", "Which of its joints is which, as YAML"),
     "seed": ("0", "Seed of the noise of the sensors"),
@@ -47,9 +48,13 @@ def _robot(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     if said["transport"] not in {"auto", "local", "rclpy"}:
         raise ValueError(f"transport:={said['transport']}: expected auto, local or rclpy")
     files = [said["parameters"]]
+    sees = said["camera"].lower() in {"true", "1"}
     if said["scenario"] != IDLE:
         files.append(str(scenarios.find(said["scenario"])))
+        sees |= said["camera"] == "auto" and scenarios.needs_eyes(scenarios.read(said["scenario"]))
     started = crew.chosen(said["nodes"], said["without"])
+    if said["nodes"] == crew.ALL and not sees:
+        started = [name for name in started if name not in crew.EXTRA]
     found: list[LaunchDescriptionEntity] = []
     for name in started:
         found += _with_end(_node(name, [*files, _values(name, said)]), f"{name} has ended")
@@ -79,6 +84,8 @@ def _values(name: str, said: dict[str, str]) -> dict[str, Any]:
     if name in crew.WITH_BODY:
         paths = {"model_file": said["model"], "joint_map": said["joint_map"]}
         values |= {key: str(Path(path).resolve()) if path else "" for key, path in paths.items()}
+    if name == "camera_driver":
+        values["streaming"] = True
     if name == crew.SIMULATOR:
         values |= {
             "seed": _number("seed", said, int, "a whole number"),

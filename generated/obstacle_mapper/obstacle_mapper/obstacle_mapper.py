@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from geometry_msgs.msg import TransformStamped
 from humanoid.data import SECOND
 from humanoid.robot.external import load_model
 from humanoid.ros import messages
 from humanoid.ros.grids import occupancy_grid
 from humanoid.ros.images import read_image, read_lens
+from humanoid.ros.recent import History
 from humanoid.ros.running import run
 from humanoid.sensing.camera import Lens
 from humanoid.sensing.floor_view import Viewpoints
@@ -20,11 +22,12 @@ from tf2_msgs.msg import TFMessage
 from obstacle_mapper._obstacle_mapper_base import ObstacleMapperBase
 from obstacle_mapper._obstacle_mapper_parameters import ParametersError
 
+_KEPT = 256  # joints and poses: those of a second, by which an image may come late
 _APART = 50_000_000  # ns that image, joints and pose may be apart: the robot moves by centimetres meanwhile
 
 
 class ObstacleMapper(ObstacleMapperBase):
-    """Adds every image to the map, with the newest joints and pose."""
+    """Adds every image to the map, with the joints and the pose of its moment."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -35,8 +38,8 @@ class ObstacleMapper(ObstacleMapperBase):
         self._map = FloorMap(values.half_size, values.resolution)
         self._newest = -1  # stamp of the newest image in it
         self._lens: Lens | None = None
-        self._joints: JointState | None = None
-        self._base: Any = None  # the newest transform from odom to base_link
+        self._joints = History[JointState](_KEPT)
+        self._bases = History[TransformStamped](_KEPT)  # from odom to base_link
         self._published: OccupancyGrid | None = None
 
     def on_head_camera_camera_info(self, message: CameraInfo) -> None:
@@ -44,40 +47,35 @@ class ObstacleMapper(ObstacleMapperBase):
         self._lens = read_lens(message)
 
     def on_joint_states(self, message: JointState) -> None:
-        """Keep the newest joints."""
-        self._joints = message
+        """Keep the joints."""
+        self._joints.put(messages.nanoseconds(message.header.stamp), message)
 
     def on_tf(self, message: TFMessage) -> None:
-        """Keep the newest pose of base_link."""
+        """Keep the pose of base_link."""
         for transform in message.transforms:
             if transform.child_frame_id == "base_link" and transform.header.frame_id == "odom":
-                self._base = transform
+                self._bases.put(messages.nanoseconds(transform.header.stamp), transform)
 
     def on_head_camera_image_raw(self, message: Image) -> None:
         """Add what the image shows, and publish the map if that changes it."""
-        lens, joints, base = self._lens, self._joints, self._base
-        if lens is None or joints is None or base is None:
+        if self._lens is None or not (self._joints and self._bases):
             return
         stamp = messages.nanoseconds(message.header.stamp)
-        apart = max(abs(messages.nanoseconds(m.header.stamp) - stamp) for m in (joints, base))
-        problem = ""
-        if apart > _APART:
-            problem = f"joints or pose are {apart / SECOND:.2f} s apart from their image"
-        else:
-            try:
-                self._look(stamp, message, lens, joints, base)
-            except ValueError as error:
-                problem = str(error)
-        if problem:
-            self.get_logger().warning(f"not mapped: {problem}", throttle_duration_sec=5.0)
+        try:
+            self._look(stamp, message, self._lens)
+        except ValueError as error:
+            self.get_logger().warning(f"not mapped: {error}", throttle_duration_sec=5.0)
             return
         grid = occupancy_grid(self._map.grid, stamp)
         if self._published is None or grid.data != self._published.data:
             self._published = grid
             self.publish_map(grid)
 
-    def _look(self, stamp: int, message: Image, lens: Lens, joints: JointState, base: Any) -> None:
-        """Add an image to the map. Raises ValueError if it cannot be read."""
+    def _look(self, stamp: int, message: Image, lens: Lens) -> None:
+        """Add an image to the map. Raises ValueError if that is not possible."""
+        joints, base = self._joints.nearest(stamp, _APART), self._bases.nearest(stamp, _APART)
+        if joints is None or base is None:
+            raise ValueError(f"there are no joints, or no pose, within {_APART / SECOND:g} s of the image")
         if stamp < self._newest:  # time starts again, and perhaps among other obstacles
             self._map = FloorMap(self.parameters.half_size, self.parameters.resolution)
         self._newest = stamp

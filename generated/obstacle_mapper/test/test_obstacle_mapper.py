@@ -15,6 +15,7 @@ import pytest
 pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
 
 from geometry_msgs.msg import TransformStamped
+from humanoid.data import SECOND
 from humanoid.robot.table import JOINT_NAMES
 from humanoid.ros import messages
 from humanoid.ros.grids import read_occupancy_grid
@@ -48,11 +49,11 @@ class World:
         self._poses = create(TFMessage, "/tf", TF_SUBSCRIPTION_QOS)
         ros.peer.create_subscription(OccupancyGrid, "/map", self.maps.append, MAP_PUBLISHER_QOS)
 
-    def tell(self, stamp: int = STAMP) -> None:
+    def tell(self, stamp: int = STAMP, x: float = 0.0) -> None:
         """Calibration, joints (the head looks ahead) and the pose of the pelvis, 0.8 m above the floor."""
         zeros = array("d", [0.0] * len(JOINT_NAMES))
         pose = TransformStamped(header=messages.header(stamp, "odom"), child_frame_id="base_link")
-        pose.transform.translation.z = 0.8
+        pose.transform.translation.x, pose.transform.translation.z = x, 0.8
         pose.transform.rotation.w = 1.0
         self._infos.publish(camera_info(messages.header(stamp, "camera"), LENS))
         self._poses.publish(TFMessage(transforms=[pose]))
@@ -76,7 +77,7 @@ class World:
 def test_what_is_red_is_mapped_where_its_lower_edge_is(ros: Any) -> None:
     node = ros.start(ObstacleMapper)
     world = World(ros)
-    ready = lambda: node._lens and node._joints and node._base  # noqa: E731  # a name for two tests
+    ready = lambda: node._lens and node._joints and node._bases  # noqa: E731  # a name for two tests
     ros.deliver(world.tell, ready, "calibration, joints and pose")
     ros.deliver(world.show, lambda: world.maps, "message on /map")
     grid = read_occupancy_grid(world.maps[-1])
@@ -98,7 +99,7 @@ def test_time_that_starts_again_begins_with_an_empty_map(ros: Any) -> None:
         count = len(world.maps)
         ros.deliver(
             lambda stamp=stamp: world.tell(stamp),
-            lambda stamp=stamp: node._base and messages.nanoseconds(node._base.header.stamp) == stamp,
+            lambda stamp=stamp: node._bases.nearest(stamp, 0) and node._joints.nearest(stamp, 0),
             "pose",
         )
         ros.deliver(
@@ -114,7 +115,21 @@ def test_time_that_starts_again_begins_with_an_empty_map(ros: Any) -> None:
 def test_an_image_without_a_pose_of_its_time_is_not_mapped(ros: Any) -> None:
     node = ros.start(ObstacleMapper)
     world = World(ros)
-    ready = lambda: node._lens and node._joints and node._base  # noqa: E731  # a name for two tests
+    ready = lambda: node._lens and node._joints and node._bases  # noqa: E731  # a name for two tests
     ros.deliver(lambda: world.tell(STAMP // 2), ready, "calibration, joints and pose")
     world.show()
     assert not ros.spins_until(lambda: world.maps, 0.3)
+
+
+def test_an_image_that_comes_late_is_mapped_from_where_it_was_taken(ros: Any) -> None:
+    node = ros.start(ObstacleMapper)
+    world = World(ros)
+    for stamp, place in ((STAMP, 0.0), (STAMP + SECOND // 2, 1.0)):
+        ros.deliver(
+            lambda stamp=stamp, place=place: world.tell(stamp, place),
+            lambda stamp=stamp: node._bases.nearest(stamp, 0) and node._joints.nearest(stamp, 0),
+            "joints and pose",
+        )
+    ros.deliver(world.show, lambda: world.maps, "message on /map")
+    occupied = read_occupancy_grid(world.maps[-1]).occupied()
+    assert occupied[:, 0].min() == pytest.approx(1.38 / (50 / LENS.focal), abs=0.25)

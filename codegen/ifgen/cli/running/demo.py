@@ -79,7 +79,7 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
 @click.option(
     "--camera/--no-camera",
     default=None,
-    help="Whether the robot sees, which takes time; by default on the local transport.",
+    help="Whether it sees, which takes time; by default on the local transport, and where obstacles are.",
 )
 @click.option(
     "--seed",

@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Literal
 
 import mujoco
+import numpy as np
 
 from ..seeds import generator
 
@@ -34,7 +35,7 @@ _FARTHEST = 50.0
 _FORM = "write COLOUR_KIND X Y [WIDTH [HEIGHT]], such as `red_box 1.2 0.3`"
 _APART = 1.1  # m between the middles of two random obstacles: the robot fits through
 _FREE = 0.85  # m around places that random obstacles leave free
-_TRIES = 1000
+_TRIES, _ATTEMPTS = 1000, 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,9 +103,25 @@ def random_solids(
     """Obstacles at random places of an area (x and y from, x and y to).
 
     Places in `free` stay free, and between any two obstacles there is room to walk. There are fewer than
-    `count` if no more fit.
+    `count` if so many do not fit.
     """
     random = generator(seed, "obstacles")
+    fullest: list[Solid] = []
+    for _ in range(_ATTEMPTS):
+        solids = _placed(random, count, area, free)
+        fullest = max(fullest, solids, key=len)
+        if len(solids) == count:
+            break
+    return tuple(fullest)
+
+
+def _placed(
+    random: np.random.Generator,
+    count: int,
+    area: tuple[float, float, float, float],
+    free: Sequence[tuple[float, float]],
+) -> list[Solid]:
+    """Obstacles at random places, until there are enough, or no more fit between those that are there."""
     names = list(COLOURS)
     solids: list[Solid] = []
     for _ in range(_TRIES):
@@ -121,7 +138,7 @@ def random_solids(
         colour = names[number % len(names)]
         name = f"{colour}_{kind}" + (f"_{again + 1}" if again else "")
         solids.append(Solid(name, kind, COLOURS[colour], x, y, width, height))
-    return tuple(solids)
+    return solids
 
 
 def add_solids(spec: mujoco.MjSpec, solids: Iterable[Solid]) -> None:

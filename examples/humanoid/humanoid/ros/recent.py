@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections import deque
 from collections.abc import Iterator
 from typing import Any, Generic, TypeVar
 
@@ -61,6 +62,29 @@ class Recent(Generic[Reading]):
     def since(self, stamp: int) -> Iterator[int]:
         """The moments of the readings after another one, newest first."""
         return itertools.takewhile(stamp.__lt__, reversed(self._readings))
+
+
+class History(Generic[Reading]):
+    """The readings of a topic for a while, by stamp [ns], for what arrives later than they do."""
+
+    def __init__(self, count: int) -> None:
+        """Keep this many readings."""
+        self._readings: deque[tuple[int, Reading]] = deque(maxlen=count)
+
+    def __len__(self) -> int:
+        """How many readings there are."""
+        return len(self._readings)
+
+    def put(self, stamp: int, reading: Reading) -> None:
+        """Keep a reading; if time has gone back, forget the others."""
+        if self._readings and stamp < self._readings[-1][0]:
+            self._readings.clear()
+        self._readings.append((stamp, reading))
+
+    def nearest(self, stamp: int, most: int) -> Reading | None:
+        """The reading nearest to a moment; None if there is none within `most` [ns]."""
+        best = min(self._readings, key=lambda kept: abs(kept[0] - stamp), default=None)
+        return None if best is None or abs(best[0] - stamp) > most else best[1]
 
 
 def rewound(*topics: Recent[Any]) -> bool:

@@ -33,7 +33,7 @@ from .director import Director
 from .pictures import check_format
 from .recorder import Recorder, check_writable
 from .replacing import ReplacementError, checked, split
-from .scenarios import ScenarioFileError, read
+from .scenarios import ScenarioFileError, needs_eyes, read
 from .window import Window, WindowError, display
 
 _LIMIT = 600.0  # s of real time for a scenario
@@ -77,7 +77,7 @@ class Options:
     realtime: bool = False
     seed: int = 0
     noise: bool = True
-    camera: bool | None = None  # None: where time waits for the pictures
+    camera: bool | None = None  # None: where time waits for the pictures, or a scenario needs them
     model: Path | None = None
     joint_map: Path | None = None
 
@@ -129,6 +129,8 @@ class _Show:
         self._options = options
         self._name = "idle" if options.idle else Path(options.scenario).stem
         self._scenario = {} if options.idle else read(options.scenario)
+        wants = options.camera is None and needs_eyes(self._scenario)
+        self._sees = options.sees or wants
         self._started: float | None = None  # when the first task began, real time
         self._has_invited = False
         self._line = report.ProgressLine()
@@ -174,7 +176,7 @@ class _Show:
             )
 
     def _members(self, group: str) -> tuple[str, ...]:
-        names = crew.members(group, with_extra=self._options.sees)
+        names = crew.members(group, with_extra=self._sees)
         return tuple(name for name in names if name not in self._without)
 
     def play(self) -> int:
@@ -299,7 +301,7 @@ class _Show:
         model_file, joint_map = options.model_parameters
         body = {"model_file": model_file, "joint_map": joint_map}
         parameters = {**dict.fromkeys(crew.WITH_BODY, body), crew.SIMULATOR: {**simulator, **body}}
-        parameters["camera_driver"] = {"streaming": options.sees}
+        parameters["camera_driver"] = {"streaming": self._sees}
         for node, values in self._scenario.items():
             parameters[node] = {**parameters.get(node, {}), **values}
         return parameters

@@ -54,6 +54,11 @@ def read(name: str) -> Parameters:
     return _parameters(path, said or {})
 
 
+def needs_eyes(parameters: Parameters) -> bool:
+    """Whether there is something in a scenario that the robot must see: obstacles."""
+    return bool(parameters.get("humanoid_simulator", {}).get("obstacles"))
+
+
 def _parameters(path: Path, said: Any) -> Parameters:
     found: dict[str, dict[str, Any]] = {}
     for node, content in said.items() if isinstance(said, dict) else [("", said)]:

@@ -35,7 +35,9 @@ function chequers() {
 
 const flat = (color, opacity = 1) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
 
-// Draw something over what stands there, later things over earlier ones.
+const HIDING = 10; // obstacles are drawn after the marks that they hide
+
+// Draw something over the robot's feet, later things over earlier ones.
 function above(object, order) {
   object.traverse((part) => {
     if (part.material) part.material.depthTest = false;
@@ -110,7 +112,8 @@ export class Scene {
     this.capture = add(new THREE.Mesh(new THREE.CircleGeometry(0.03, 32), flat(0xd6336c)), 0.01);
     this.zmp = add(new THREE.Mesh(new THREE.CircleGeometry(0.022, 32), flat(0x7048e8)), 0.01);
     this.support = add(new THREE.Mesh(new THREE.BufferGeometry(), flat(0x1098ad, 0.4)), 0.01);
-    [this.goal, this.support, this.capture, this.zmp, this.push].forEach(above);
+    [this.goal, this.support, this.capture, this.zmp].forEach(above);
+    above(this.push, HIDING + 1); // in the air
     this.path = add(new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x1f6feb })), 0.006);
     this.trail = add(new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x8a97a5 })), 0.003);
     this.map = add(new THREE.Mesh(new THREE.PlaneGeometry(1, 1), flat(0xffffff, 0.5)), 0.002);
@@ -272,7 +275,9 @@ export class Scene {
             ? new THREE.SphereGeometry(size[0] / 2, 24, 16)
             : new THREE.CylinderGeometry(size[0] / 2, size[0] / 2, size[2], 32).rotateX(Math.PI / 2);
       const material = new THREE.MeshLambertMaterial({ color: new THREE.Color().setRGB(...color, THREE.SRGBColorSpace) });
+      material.transparent = true; // so that it is drawn among the marks, and after them
       const mesh = new THREE.Mesh(geometry, material);
+      mesh.renderOrder = HIDING;
       mesh.name = name;
       mesh.position.set(...at);
       mesh.rotation.z = yaw;
