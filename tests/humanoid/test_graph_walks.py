@@ -35,7 +35,7 @@ def _goals(seed: int, count: int) -> list[Goal]:
 @pytest.mark.parametrize("seconds", [5.0, pytest.param(60.0, marks=pytest.mark.slow)])
 def test_stands(seconds: float) -> None:
     (stood,) = _played(("stand", [seconds], {"seed": 1}))
-    assert 0 < stood["result"] < 3e-3
+    assert 0 < stood["result"] < 8e-3  # it levels itself as its soles correct the IMU
 
 
 @pytest.mark.slow

@@ -44,7 +44,7 @@ def _walked(model: HumanoidModel, *, true_state: bool, noise: Noise, seed: int =
 @pytest.mark.parametrize("seconds", [5.0, pytest.param(60.0, marks=pytest.mark.slow)])
 def test_stands(model: HumanoidModel, seconds: float) -> None:
     robot = Lockstep(model, seed=1, noise=NOISE)
-    robot.run(1.0)
+    robot.run(4.0)  # its soles find out how level the IMU is
     before = robot.simulator.truth().position
     feet = robot.simulator.sole_truth().feet
     robot.run(seconds)

@@ -10,12 +10,15 @@ import numpy as np
 from ..data import FootWrench, GaitState, Imu, JointStates, Odometry, Stance, Support
 from ..kinematics.dynamics import RobotState
 from ..robot.model import GRAVITY, HumanoidModel
-from ..spatial import Array, matrix_of
+from ..spatial import Array, matrix_of, quaternion_of, rotation_vector
 
 _LOAD_SMOOTHING = 0.3  # weight of a new reading in the estimate of how the weight is shared
 # A foot bounces and slides as it lands. It has come to rest when it carries this share of the weight and this
 # time [ns] has passed, or when it carries most of the weight.
 _SETTLED, _SETTLING_TIME, _CARRIES = 0.2, 80_000_000, 0.6
+# Seconds in which soles correct the tilt, and rad of it that they show at most: pushed, a robot stands on the
+# edge of a foot.
+_LEVELLING, _EDGE = 1.0, 0.02
 _IDLE = 0.1  # share of the weight below which a foot does not count
 _SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
 
@@ -26,6 +29,9 @@ class StateEstimator:
     Each foot has an anchor: where its sole stands. A foot that swings by the controller's plan is ignored,
     however early it touches the ground. A landed foot is ignored too until it carries weight, because it
     still slides. Its anchor is set then.
+
+    The IMU's roll and pitch follow gravity as an accelerometer with a bias feels it. The soles that carry lie
+    flat, and correct them. Nothing corrects the heading: it drifts with the gyroscope.
 
     `velocity_time` and `position_time` [s]: how fast the legs correct the integrated IMU.
     """
@@ -42,6 +48,7 @@ class StateEstimator:
         self._support = Support.BOTH
         self._landed = 0  # when it landed
         self._settling: int | None = None  # the side whose foot is in the air or has just landed
+        self._level = np.zeros(3)  # rotation vector that corrects roll and pitch of the IMU
         self._idle = (False, False)  # whether a foot carries nothing
         self._weight = model.mass * GRAVITY
         self._stamp = 0
@@ -73,7 +80,9 @@ class StateEstimator:
         if not _finite(joints, imu, wrenches):
             self.refused += 1
             return self._last
-        self._state.set_posture(np.zeros(3), imu.orientation, joints.position)
+        turned = rotation_vector(self._level) @ matrix_of(imu.orientation)
+        orientation = quaternion_of(turned)
+        self._state.set_posture(np.zeros(3), orientation, joints.position)
         self._state.set_motion(np.zeros(3), imu.angular_velocity, joints.velocity)
         relative = [self._state.sole(side)[0] for side in (0, 1)]
         first = self._stamp == 0
@@ -89,13 +98,15 @@ class StateEstimator:
         if first:
             self._position, self._velocity = legs, speed
         else:
-            self._fuse(legs, speed, imu, (joints.stamp - self._stamp) * 1e-9)
+            elapsed = (joints.stamp - self._stamp) * 1e-9
+            self._fuse(legs, speed, turned @ imu.linear_acceleration, elapsed)
+            self._stand_level(elapsed)
         self._stamp = max(joints.stamp, 1)
-        self._state.set_posture(self._position, imu.orientation, joints.position)
+        self._state.set_posture(self._position, orientation, joints.position)
         self._anchor()
-        velocity = matrix_of(imu.orientation).T @ self._velocity
+        velocity = turned.T @ self._velocity
         self._last = Odometry(
-            joints.stamp, self._position.copy(), imu.orientation.copy(), velocity, imu.angular_velocity.copy()
+            joints.stamp, self._position.copy(), orientation, velocity, imu.angular_velocity.copy()
         )
         return self._last
 
@@ -121,10 +132,18 @@ class StateEstimator:
             self._idle = (True, True)  # it is falling onto its foot, which may still slide
         self._support = support
 
-    def _fuse(self, position: Array, velocity: Array, imu: Imu, period: float) -> None:
-        """Integrate the IMU's acceleration, and pull the integrals towards the legs' values."""
-        acceleration = matrix_of(imu.orientation) @ imu.linear_acceleration - np.array([0.0, 0.0, GRAVITY])
-        self._velocity = self._velocity + acceleration * period
+    def _stand_level(self, period: float) -> None:
+        """Correct roll and pitch of the IMU's orientation: a sole that carries lies flat on the floor."""
+        for side, share in enumerate((self._share, 1 - self._share)):
+            if side == self._settling or self._idle[side]:
+                continue
+            x, y, _ = self._state.sole(side)[1][:, 2]
+            way = share * period / _LEVELLING
+            self._level += way * np.array([_within(y), _within(-x), 0.0])
+
+    def _fuse(self, position: Array, velocity: Array, felt: Array, period: float) -> None:
+        """Integrate the acceleration that was felt (3,), and pull the integrals towards the legs' values."""
+        self._velocity = self._velocity + (felt - np.array([0.0, 0.0, GRAVITY])) * period
         legs = not all(self._idle)
         if legs:
             self._velocity += (1 - math.exp(-period / self._velocity_time)) * (velocity - self._velocity)
@@ -141,6 +160,10 @@ class StateEstimator:
             if side == self._settling or idle:
                 x, y, _ = self._state.sole(side)[0]
                 self._anchors[side] = np.array([x, y, 0.0])
+
+
+def _within(tilt: float) -> float:
+    return min(max(tilt, -_EDGE), _EDGE)
 
 
 def _finite(joints: JointStates, imu: Imu, wrenches: tuple[FootWrench, FootWrench]) -> bool:

@@ -14,7 +14,8 @@ from ..robot.model import PERIOD, HumanoidModel
 from ..robot.obstacles import Solid
 from ..robot.table import SIDES
 from ..seeds import generator
-from ..spatial import Array, matrix_of, quaternion_of, rotation_vector, yaw_of
+from ..spatial import Array, quaternion_of, yaw_of
+from .inertial import MEMS, InertialErrors, InertialUnit
 from .obstacles import Obstacles
 from .safety import CommandGate
 
@@ -23,16 +24,14 @@ CONTACT_FORCE = 5.0  # N on a sole that count as contact
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Standard deviations of the noise added to each reading; MuJoCo itself adds none."""
+    """Errors of the sensors, with standard deviations for each reading; MuJoCo itself adds none."""
 
-    orientation: float = 0.002  # rad
-    angular_velocity: float = 0.005  # rad/s
-    linear_acceleration: float = 0.05  # m/s2
+    inertial: InertialErrors | None = MEMS  # None: the IMU is exact, and knows its orientation
     position: float = 0.0005  # rad
     velocity: float = 0.02  # rad/s
 
 
-QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
+QUIET = Noise(None, 0.0, 0.0)
 
 
 class Simulator:
@@ -62,6 +61,8 @@ class Simulator:
         """Start again at time 0, with joint positions (joints,) and base_link's position (3,), if given."""
         self.stamp = 0
         self._random = generator(self._seed, "sim")
+        errors = self._noise.inertial
+        self._imu = InertialUnit(errors, generator(self._seed, "imu")) if errors else None
         self._pushes.clear()
         mujoco.mj_resetData(self.model.mj, self.data)
         self.obstacles.reset()
@@ -72,6 +73,7 @@ class Simulator:
             self.data.qpos[:3] = base
         self.gate.reset(self.data.qpos[self.model.qpos])
         mujoco.mj_forward(self.model.mj, self.data)
+        self._inertia = self._read("imu_angular_velocity"), self._read("imu_linear_acceleration")
 
     def apply(self, command: JointCommand) -> bool:
         """Give the servos new set-points; False if the command is refused and the last good one remains."""
@@ -90,23 +92,24 @@ class Simulator:
         self.data.ctrl[self.model.actuators] = self.gate.setpoints(self.stamp)
         self._pushes = [push for push in self._pushes if push[0] > self.stamp]
         self.data.xfrc_applied[self.model.torso, :3] = sum((force for _, force in self._pushes), np.zeros(3))
-        mujoco.mj_step(self.model.mj, self.data, self._steps)
+        rate, acceleration = np.zeros(3), np.zeros(3)
+        for number in range(self._steps):
+            mujoco.mj_step(self.model.mj, self.data)
+            # Sensors are from before the step: what accelerates in it, and what the last one led to.
+            acceleration += self._read("imu_linear_acceleration")
+            rate += self._read("imu_angular_velocity") if number else 0.0
         # Sensors and poses are from before the last step until they are computed again.
         mujoco.mj_forward(self.model.mj, self.data)
+        rate += self._read("imu_angular_velocity")
+        # The IMU takes the mean since the last moment. A foot that lands is felt for 2 ms; a sample now and
+        # then would miss it, or take it for more than it was.
+        self._inertia = rate / self._steps, acceleration / self._steps
         self.stamp += self._period
 
     def sensors(self) -> Sensors:
-        """The sensor values of this moment, with noise. Each call draws new noise."""
+        """The sensor values of this moment, with noise. Each call draws new noise of the joints."""
         data, noise = self.data, self._noise
         draw = self._random.standard_normal
-        w, x, y, z = self._read("imu_orientation")
-        turned = matrix_of(np.array([x, y, z, w])) @ rotation_vector(noise.orientation * draw(3))
-        imu = Imu(
-            self.stamp,
-            quaternion_of(turned),
-            self._read("imu_angular_velocity") + noise.angular_velocity * draw(3),
-            self._read("imu_linear_acceleration") + noise.linear_acceleration * draw(3),
-        )
         joints = JointStates(
             self.stamp,
             data.qpos[self.model.qpos] + noise.position * draw(len(self.model.qpos)),
@@ -119,7 +122,14 @@ class Simulator:
             for side in SIDES
         )
         touch = [float(self._read(f"{side}_foot_touch")[0]) > CONTACT_FORCE for side in SIDES]
-        return Sensors(self.stamp, joints, imu, (left, right), (touch[0], touch[1]))
+        return Sensors(self.stamp, joints, self._inertial(), (left, right), (touch[0], touch[1]))
+
+    def _inertial(self) -> Imu:
+        rate, acceleration = self._inertia
+        if self._imu is not None:
+            return self._imu.read(self.stamp, rate, acceleration)
+        w, x, y, z = self._read("imu_orientation")
+        return Imu(self.stamp, np.array([x, y, z, w]), rate.copy(), acceleration.copy())
 
     def truth(self) -> Odometry:
         """True pose and velocity of base_link: for tests and pictures, not for controllers."""
