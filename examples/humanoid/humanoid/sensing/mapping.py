@@ -91,7 +91,7 @@ class FloorMap:
             hidden = self._cells(places[view.covered(places)])
             added[hidden] = np.maximum(added[hidden], _GUESS)
             at_once[hidden] |= near.all() & (self._evidence[hidden] > _REFUTED)
-        at_once[self._cells(self._nearer(foot, sighting.cut))] = True
+        at_once[self._cells(self._nearer(foot, sighting.cut, reach))] = True
         cells = np.nonzero((added > 0) | at_once)
         known = self._evidence[cells] > _OCCUPIED
         evidence = self._evidence[cells] + added[cells]
@@ -101,12 +101,12 @@ class FloorMap:
         self._height[cells] = np.where(known, np.minimum(self._height[cells], height), height)
         self._seen[cells] = stamp
 
-    def _nearer(self, foot: Array, cut: Array) -> Array:
+    def _nearer(self, foot: Array, cut: Array, reach: float) -> Array:
         """Places (n, 2) where an obstacle may begin that the picture's edge cuts at places (m, 2).
 
         None, if the map knows something between the robot and the edge.
         """
-        cut = cut[np.isfinite(cut).all(axis=1)]
+        cut = cut[np.hypot(*(cut - foot).T) <= reach]
         if not len(cut):
             return cut
         shares = np.linspace(0.2, 1.0, 25)
