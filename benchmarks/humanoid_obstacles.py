@@ -20,22 +20,31 @@ import ifgen
 ifgen.activate("local")
 
 # ruff: noqa: E402  # importable only from here on
-from humanoid.trials.obstacle_trials import walks
+from humanoid.trials.obstacle_trials import Scene, walks
 
 
 def main() -> None:
     """Measure and print."""
-    show((scenes,), is_quick(__doc__))
+    show((scenes, moved), is_quick(__doc__))
 
 
 def scenes(quick: bool) -> list[Row]:
     """Walks through random scenes."""
-    count = 3 if quick else 20
-    found = walks(range(count))
+    return _rows(walks(range(3 if quick else 20)), "")
+
+
+def moved(quick: bool) -> list[Row]:
+    """The same, where an obstacle is put in front of the robot on its way."""
+    found = walks(range(2 if quick else 10), moving=True)
+    return _rows([scene for scene in found if scene.moved], ", an obstacle moved in front of it")
+
+
+def _rows(found: list[Scene], what: str) -> list[Row]:
     there = [scene for scene in found if scene.reached]
     reasons = "; ".join(f"{scene.seed}: {scene.reason}" for scene in found if not scene.reached)
+    seeds = f"{len(found)} scenes (seeds {found[0].seed} to {found[-1].seed}){what}" if found else "no scene"
     return [
-        (f"goals reached, {count} scenes", ">= 95 %", f"{len(there)}{f' ({reasons})' if reasons else ''}"),
+        (f"goals reached, {seeds}", ">= 95 %", f"{len(there)}{f' ({reasons})' if reasons else ''}"),
         ("falls", "0", str(sum(scene.falls for scene in found))),
         ("touches of obstacles", "0", str(sum(scene.touches for scene in found))),
         ("way, straight line 4 m", "", _spread([scene.length for scene in there], "m")),

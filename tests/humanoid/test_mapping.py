@@ -153,11 +153,16 @@ def test_an_obstacle_that_has_gone_is_cleared_and_one_out_of_sight_is_forgotten(
     robot.close()
 
 
-def test_an_obstacle_right_ahead_is_noticed() -> None:
-    robot = Robot(["red_box 0.75 0"])
-    grid = robot.look()
+def test_an_obstacle_right_ahead_is_noticed_and_its_going_away_too() -> None:
+    robot = Robot(["red_box 0.75 0"])  # its foot is below the picture
+    occupied = robot.look().occupied()
+    (solid,) = robot.simulator.obstacles.solids
+    assert nearest(occupied, filled(solid)).max() < 0.1
+    assert robot.simulator.obstacles.move("red_box", -3.0, 0.0) == ""
+    for _ in range(2):
+        grid = robot.look()
     robot.close()
-    assert nearest(grid.occupied(), np.array([[0.9, 0.0]]))[0] < 0.4
+    assert len(grid.occupied()) == 0
 
 
 def test_the_robot_and_the_board_with_the_face_are_no_obstacles() -> None:

@@ -59,19 +59,13 @@ class Sighting:
     """An obstacle in a picture; places (n, 2) in odom.
 
     `front`: where it stands, as far as its lower edge is seen. `cut`: where it is hidden by the picture's
-    edge, so that it begins there or nearer. `ends`: for each place of `front`, then of `cut`, how far along
-    the floor it hides what is behind [m from the camera; infinite above the horizon].
+    edge, so that it begins there or nearer. `ends`: for each place of `front`, then of `cut`, how far away
+    it hides the floor [m from the camera; infinite above the horizon].
     """
 
     front: Array
     cut: Array
     ends: Array
-
-    def height(self, camera: Array) -> float:
-        """How high it is, if it is as deep as it is wide [m]; at most as high as the camera (3,)."""
-        starts = np.hypot(*(np.concatenate([self.front, self.cut]) - camera[:2]).T)
-        width = float(np.hypot(*(self.front[-1] - self.front[0]))) if len(self.front) else 0.0
-        return max(float(camera[2] * np.median(1.0 - (starts + width) / self.ends)), 0.0)
 
 
 class FloorView:

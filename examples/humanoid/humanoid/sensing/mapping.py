@@ -23,7 +23,8 @@ _NARROWEST, _DEEPEST = 0.15, 0.5  # m: what an obstacle is taken to be
 _JUMP = 0.3  # m between neighbouring columns of a picture that are two obstacles
 _NEARER = 0.5  # m: how much nearer an obstacle may be than the edge of the picture that cuts it
 _AROUND = 0.05  # m around an occupied cell that may belong to the same obstacle
-_UPPER = 0.5  # share of an obstacle's height that it has at least, however badly that is known
+_SURELY = 0.9  # share of the height that hides the floor, where the camera must not see any
+_LEAST_END = 0.2  # of the columns of a picture: the others hide more
 
 _Cells = tuple[NDArray[np.intp], NDArray[np.intp]]
 
@@ -35,7 +36,7 @@ class FloorMap:
         self._resolution, self._corner = resolution, -half_size
         self._size = round(2 * half_size / resolution)
         self._evidence = np.zeros((self._size, self._size))
-        self._height = np.zeros((self._size, self._size))  # of what stands there [m], rather too low
+        self._height = np.zeros((self._size, self._size))  # that what stands there has at least [m]
         self._seen = np.zeros((self._size, self._size), dtype=np.int64) - 1  # when [ns]; -1: never
 
     @property
@@ -72,7 +73,7 @@ class FloorMap:
         rows, columns, places = rows[near], columns[near], places[near]
         free = view.floor_at(places)
         solid = self._evidence[rows, columns] > _OCCUPIED
-        free[solid] |= view.floor_at(places[solid], _UPPER * self._height[rows[solid], columns[solid]])
+        free[solid] |= view.floor_at(places[solid], self._height[rows[solid], columns[solid]])
         return rows[free], columns[free]
 
     def _add(self, sighting: Sighting, view: FloorView, stamp: int, reach: float) -> None:
@@ -90,22 +91,22 @@ class FloorMap:
             hidden = self._cells(places[view.covered(places)])
             added[hidden] = np.maximum(added[hidden], _GUESS)
             at_once[hidden] |= near.all() & (self._evidence[hidden] > _REFUTED)
-        at_once[self._cells(self._nearer(foot, sighting.cut))] = True
+        at_once[self._cells(self._nearer(foot, sighting.cut, reach))] = True
         cells = np.nonzero((added > 0) | at_once)
         known = self._evidence[cells] > _OCCUPIED
         evidence = self._evidence[cells] + added[cells]
         evidence[at_once[cells]] = np.maximum(evidence[at_once[cells]], _AT_ONCE)
         self._evidence[cells] = np.minimum(evidence, _MOST)
-        height = sighting.height(view.position)
+        height = _SURELY * _height(self._middles(*cells), sighting, view)
         self._height[cells] = np.where(known, np.minimum(self._height[cells], height), height)
         self._seen[cells] = stamp
 
-    def _nearer(self, foot: Array, cut: Array) -> Array:
+    def _nearer(self, foot: Array, cut: Array, reach: float) -> Array:
         """Places (n, 2) where an obstacle may begin that the picture's edge cuts at places (m, 2).
 
         None, if the map knows something between the robot and the edge.
         """
-        cut = cut[np.isfinite(cut).all(axis=1)]
+        cut = cut[np.hypot(*(cut - foot).T) <= reach]
         if not len(cut):
             return cut
         shares = np.linspace(0.2, 1.0, 25)
@@ -126,6 +127,14 @@ class FloorMap:
         places = ((points - self._corner) // self._resolution).astype(int)
         inside = ((places >= 0) & (places < self._size)).all(axis=1)
         return places[inside, 1], places[inside, 0]
+
+
+def _height(places: Array, sighting: Sighting, view: FloorView) -> Array:
+    """How high something at each of the places (n, 2) must be to hide as much of the floor as it does."""
+    distance = np.hypot(*(places - view.position[:2]).T)
+    end = float(np.quantile(sighting.ends, _LEAST_END, method="lower"))
+    heights: Array = view.position[2] * np.maximum(1.0 - distance / end, 0.0)
+    return heights
 
 
 def _parts(front: Array) -> list[Array]:
