@@ -13,9 +13,7 @@ import numpy as np
 from ..robot.model import GRAVITY, HumanoidModel
 from ..spatial import Array
 
-_GYRATION = (
-    0.22  # metres: the radius at which all of the mass would turn as hard as what turns with the trunk
-)
+_GYRATION = 0.22  # metres; all of the mass at this radius would be as hard to turn as the trunk is
 _IGNORED = 0.02  # metres that the ZMP may be wanted outside the soles without any effect
 _MOST, _BRAKE = 40.0, 10.0  # rad/s2 when it is turned, and when it is stopped in front of its limit
 _FARTHEST = 0.65  # rad

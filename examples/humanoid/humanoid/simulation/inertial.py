@@ -16,9 +16,8 @@ from ..robot.model import GRAVITY, PERIOD
 from ..sensing.attitude import AttitudeEstimator
 from ..spatial import Array
 
-_WARMING_UP = (
-    5_000_000_000  # ns that the unit has lain still and level before the run, as a robot is switched on
-)
+# The unit has lain still and level before the run, as when a robot is switched on.
+_WARMING_UP = 5_000_000_000  # ns
 
 
 @dataclass(frozen=True, slots=True)
