@@ -1,15 +1,17 @@
-"""The inertial unit: what it knows about its orientation, with a gyroscope and an accelerometer that err."""
+"""What separates a controller from its robot: an inertial unit that errs, and servos that obey late."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
-from humanoid.robot.model import GRAVITY, PERIOD, HumanoidModel
+from humanoid.control.prediction import Prediction
+from humanoid.data import JointCommand
+from humanoid.robot.model import GRAVITY, PERIOD, SERVO_DELAY, HumanoidModel
 from humanoid.seeds import generator
 from humanoid.sensing.attitude import AttitudeEstimator
 from humanoid.simulation.inertial import MEMS, InertialErrors, InertialUnit
-from humanoid.simulation.sim import Noise
+from humanoid.simulation.sim import Noise, Simulator
 from humanoid.spatial import Array, matrix_of, rotation_rpy, rotation_vector, vector_of
 from humanoid.trials.harness import Lockstep
 
@@ -94,3 +96,33 @@ def test_the_soles_correct_the_tilt(model: HumanoidModel) -> None:
     )
     assert np.linalg.norm(said) > 5e-3
     assert np.linalg.norm(known) < 2e-3
+
+
+def test_servos_obey_after_their_delay(model: HumanoidModel) -> None:
+    simulator = Simulator(model)
+    before = simulator.data.ctrl[model.actuators].copy()
+    wanted = np.clip(before + 0.1, model.lower, model.upper)
+    assert simulator.apply(JointCommand(0, wanted))
+    obeyed = []
+    while simulator.stamp < 10 * PERIOD:
+        simulator.step()
+        obeyed.append(bool(np.array_equal(simulator.data.ctrl[model.actuators], wanted)))
+    assert obeyed.index(True) * PERIOD == SERVO_DELAY == 12_000_000
+    assert all(obeyed[obeyed.index(True) :])
+
+
+def test_the_controller_expects_what_it_commanded_and_a_push() -> None:
+    prediction, com = Prediction(4.0, 0.004), np.array([0.0, 0.0])
+    assert not prediction.gained(com, np.zeros(2), standing=True).any()
+    for _ in range(5):
+        prediction.press(np.array([-0.1, 0.0]))
+    velocity = np.zeros(2)
+    for _ in range(20):
+        velocity = velocity + 0.004 * np.array([16.0 * 0.1, 0.0])
+        ordinary = prediction.gained(com, velocity, standing=True)
+    assert np.allclose(ordinary, [0.012 * 1.6, 0.0])
+    for _ in range(20):
+        velocity = velocity + 0.004 * np.array([1.6, 6.0])
+        pushed = prediction.gained(com, velocity, standing=True)
+    assert 0.012 * 3.5 < pushed[1] < 0.012 * 6.0
+    assert np.allclose(prediction.gained(com, velocity, standing=False), ordinary)

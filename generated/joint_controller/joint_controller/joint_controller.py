@@ -66,6 +66,9 @@ class JointController(JointControllerBase):
         else:
             text = f"set-points refused ({self._gate.refusals.total} so far): {self._gate.reason}"
             self.get_logger().warning(text, throttle_duration_sec=1.0)
+            if command.answers and command.stamp == newest > self._done and not self._standby.reason:
+                # The servos keep their last ones. Without an answer, time in lockstep would wait for another.
+                self._answer_with(data.JointCommand(newest, self._gate.setpoints(newest)))
 
     def on_joint_encoders(self, message: JointState) -> None:
         """Keep what a driver measures."""

@@ -93,6 +93,23 @@ def test_good_commands_pass_and_bad_ones_do_not(ros: Any) -> None:
     assert all(math.isfinite(value) for message in robot.sent for value in message.position)
 
 
+def test_a_bad_answer_to_the_newest_readings_lets_the_servos_keep_their_last_set_points(ros: Any) -> None:
+    robot = Robot(ros)
+
+    def tick(stamp: int, *, spoilt: bool = False) -> None:
+        robot.read(stamp)
+        robot.command(stamp, spoilt=spoilt)
+
+    ros.deliver(lambda: tick(PERIOD), lambda: robot.sent, "set-points")
+    ros.deliver(
+        lambda: tick(2 * PERIOD, spoilt=True),
+        lambda: robot.sent[-1].header.stamp.nanosec == 2 * PERIOD,
+        "set-points for the second readings",
+    )
+    assert robot.sent[-1].position == robot.sent[0].position
+    assert robot.node._gate.refusals.not_finite
+
+
 def test_without_commands_it_stands_on_its_own(ros: Any) -> None:
     robot = Robot(ros)
 

@@ -33,6 +33,7 @@ from . import balance, effort
 from .fitting import fitted
 from .inputs import LATE, LEASE, Inputs, Leases
 from .posture import level, standing
+from .prediction import Prediction
 from .reference import GaitParameters, Sample
 from .stepping import Stepping
 from .support import support_polygon
@@ -86,6 +87,7 @@ class WholeBodyController:
         self._stamp = 0
         self._elapsed = self._period  # since the last tick, seconds
         self.error = np.zeros(2)  # of the DCM at the last tick, metres
+        self._prediction = Prediction(self._omega, self._period)
         self._zmp: Array | None = None  # where the soles had to press at the last tick (2,)
 
     def follow(self, plan: FootstepPlan) -> str:
@@ -214,10 +216,15 @@ class WholeBodyController:
         self.stepping.land_now()
 
     def _sense(self, joints: JointStates, imu: Imu, odometry: Odometry) -> None:
-        """Adopt the robot's state; at the first tick, begin from where its feet are."""
+        """Adopt the robot's state, with its speed when the servos obey; begin from where its feet are.
+
+        A posture is not predicted: a foot that lands stops at once.
+        """
         state = self._state
-        state.set_posture(odometry.position, odometry.orientation, joints.position)
         velocity = world_velocity(odometry.orientation, odometry.linear_velocity)
+        state.set_posture(odometry.position, odometry.orientation, joints.position)
+        standing = self.stepping.sample.swing is None
+        velocity[:2] += self._prediction.gained(state.com[:2], velocity[:2], standing)
         state.set_motion(velocity, odometry.angular_velocity, joints.velocity)
         state.compute_dynamics()
         if not self._started:
@@ -253,6 +260,7 @@ class WholeBodyController:
         axes = heading[:2, :2]
         beyond = axes.T @ (zmp - load.zmp) if stance is None else np.zeros(2)
         made_up = axes @ self._trunk.turn(beyond, self._elapsed)
+        self._prediction.press(load.zmp + made_up)
         force = effort.wanted_force(state, load.zmp + made_up, self._omega, height)
         turning = self._trunk.accelerations(heading, state.base[1])
         motion = effort.Motion(state, force, stepping.accelerations(), turning)

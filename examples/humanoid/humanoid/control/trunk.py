@@ -1,4 +1,4 @@
-"""The trunk as a flywheel: it turns to where the robot falls, and that pushes the rest of the body back.
+"""Trunk and arms as a flywheel: they turn to where the robot falls, and that pushes the rest of it back.
 
 The ground pushes no farther out than the edges of the soles. While the trunk is turned ever faster, the
 ground's force acts as if it came from farther out. That buys time for a step, or makes one unnecessary.
@@ -17,22 +17,35 @@ _GYRATION = (
     0.22  # metres: the radius at which all of the mass would turn as hard as what turns with the trunk
 )
 _IGNORED = 0.02  # metres that the ZMP may be wanted outside the soles without any effect
-_MOST, _BRAKE = 40.0, 15.0  # rad/s2 when it is turned, and when it is stopped in front of its limit
-_FARTHEST = 0.5  # rad
+_MOST, _BRAKE = 40.0, 10.0  # rad/s2 when it is turned, and when it is stopped in front of its limit
+_FARTHEST = 0.65  # rad
 _RETURN = 4.0  # 1/s: how fast it becomes upright again
 _WAIST = 0.5  # how far the waist bends for each radian of the pelvis
-_JOINTS = ("waist_roll", "waist_pitch")
+# How far an arm swings out on the side from which it falls, and both arms back or to the front.
+_OUT, _BACK = 2.5, 2.0
+# The axis of the lean (0: roll, 1: pitch), a joint that moves with it, its share, and the lean's sign if only
+# one moves it.
+_JOINTS = (
+    (0, "waist_roll", _WAIST, 0),
+    (1, "waist_pitch", _WAIST, 0),
+    (0, "l_shoulder_roll", _OUT, 1),
+    (0, "r_shoulder_roll", _OUT, -1),
+    (1, "l_shoulder_pitch", _BACK, 0),
+    (1, "r_shoulder_pitch", _BACK, 0),
+)
 
 
 class Trunk:
-    """How far pelvis and waist are turned beyond the wanted posture, about the axes forwards and left."""
+    """How far the trunk is turned beyond the wanted posture, about the axes forwards and left; arms help."""
 
     def __init__(self, model: HumanoidModel) -> None:
         self._model = model
-        self._waist = [
-            (axis, model.body.index(name)) for axis, name in enumerate(_JOINTS) if name in model.body.joints
+        self._moving = [
+            (axis, model.body.index(name), share, sign)
+            for axis, name, share, sign in _JOINTS
+            if name in model.body.joints
         ]
-        self._bend = np.zeros(len(model.body.joints))  # of the waist, as the last set-points have it
+        self._bend = np.zeros(len(model.body.joints))  # of these, as the last set-points have them
         # Angular acceleration for each metre.
         self._gain = GRAVITY / (_GYRATION * model.body.scale) ** 2
         self._rate, self._acceleration = np.zeros(2), np.zeros(2)
@@ -69,19 +82,21 @@ class Trunk:
         """
         found = np.zeros(self._model.mj.nv)
         found[3:6] = pelvis.T @ heading[:, :2] @ self._acceleration
-        for axis, joint in self._waist:
-            found[self._model.dof[joint]] = _WAIST * self._acceleration[axis]
+        for axis, joint, share, sign in self._moving:
+            if sign * self.lean[axis] >= 0:
+                found[self._model.dof[joint]] = share * self._acceleration[axis]
         return found
 
     def straight(self, joints: Array) -> Array:
-        """Joint positions (joints,) without the present bend of the waist."""
+        """Joint positions (joints,) without what the present lean adds to waist and arms."""
         return joints - self._bend
 
     def bent(self, joints: Array) -> Array:
-        """Joint positions (joints,) with the waist bent as the trunk is turned now, within its range."""
+        """Joint positions (joints,) with what the lean adds to waist and arms, within their ranges."""
         bent = joints.copy()
-        for axis, joint in self._waist:
-            bent[joint] += _WAIST * self.lean[axis]
+        for axis, joint, share, sign in self._moving:
+            if sign * self.lean[axis] >= 0:
+                bent[joint] += share * self.lean[axis]
         bent = np.clip(bent, self._model.lower, self._model.upper)
         self._bend = bent - joints
         return bent

@@ -22,6 +22,7 @@ Indices = NDArray[np.intp]
 GRAVITY = 9.81
 _ANKLE_ROOM = 0.4  # rad
 _GAP = 0.06  # metres between the inner edges of the soles
+SERVO_DELAY = 12_000_000  # ns from a set-point to the torque that it leads to
 PERIOD = 4_000_000  # ns between control ticks: 250 Hz; more makes the estimate of the velocity too coarse
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,7 +11,7 @@ import mujoco
 import numpy as np
 
 from ..data import SECOND, FootWrench, Imu, JointCommand, JointStates, Odometry, Sensors, Stance, Support
-from ..robot.model import PERIOD, HumanoidModel
+from ..robot.model import PERIOD, SERVO_DELAY, HumanoidModel
 from ..robot.obstacles import Solid
 from ..robot.table import SIDES
 from ..seeds import generator
@@ -72,6 +73,8 @@ class Simulator:
         if base is not None:
             self.data.qpos[:3] = base
         self.gate.reset(self.data.qpos[self.model.qpos])
+        first = self.gate.setpoints(0)
+        self._on_the_way = deque(first for _ in range(round(SERVO_DELAY / self._period)))
         mujoco.mj_forward(self.model.mj, self.data)
         self._inertia = self._read("imu_angular_velocity"), self._read("imu_linear_acceleration")
 
@@ -89,7 +92,8 @@ class Simulator:
 
     def step(self) -> None:
         """Advance by one control period."""
-        self.data.ctrl[self.model.actuators] = self.gate.setpoints(self.stamp)
+        self._on_the_way.append(self.gate.setpoints(self.stamp))
+        self.data.ctrl[self.model.actuators] = self._on_the_way.popleft()
         self._pushes = [push for push in self._pushes if push[0] > self.stamp]
         self.data.xfrc_applied[self.model.torso, :3] = sum((force for _, force in self._pushes), np.zeros(3))
         rate, acceleration = np.zeros(3), np.zeros(3)
