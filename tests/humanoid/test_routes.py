@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from humanoid.data import Leg, Stance, Support
-from humanoid.planning.following import blocked_step, body_of, steps_to_last_line
+from humanoid.planning.following import SHARP_TURN, blocked_step, body_of, steps_to_last_line
 from humanoid.planning.footsteps import PlanStatus, StepLimits, plan_footsteps
 from humanoid.planning.routes import CLEARANCE, RouteStatus, disc_points, plan_route
 from humanoid.robot.grid import nearest
@@ -103,6 +103,15 @@ def test_steps_along_random_routes_keep_away_and_are_steps_that_legs_can_take() 
         assert min(nearest(points, body_of(step, LIMITS)[None, :2])[0] for step in steps) > 0.32
         walked += 1
     assert walked >= 11
+
+
+def test_where_there_is_no_room_for_a_bend_the_body_turns_on_the_spot() -> None:
+    """Something has been put 0.4 m in front of the robot, and the way out is to the left."""
+    box, out = np.array([[0.41, 0.1], [0.41, -0.1]]), [(0.0, 0.0), (0.05, 1.0), (2.0, 1.0)]
+    bend, _ = steps_to_last_line(HERE, out, LIMITS, None, 1)
+    assert blocked_step(bend, box, np.zeros(3), LIMITS).startswith("step ")
+    spot, _ = steps_to_last_line(HERE, out, LIMITS, None, 1, SHARP_TURN)
+    assert blocked_step(spot, box, np.zeros(3), LIMITS) == ""
 
 
 def test_a_step_towards_an_obstacle_is_seen_and_one_away_from_it_is_not() -> None:

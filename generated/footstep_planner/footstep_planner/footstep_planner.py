@@ -9,7 +9,7 @@ import numpy as np
 from geometry_msgs.msg import Twist
 from humanoid import data
 from humanoid.control.pace import Pace
-from humanoid.planning.following import blocked_step, steps_to_last_line
+from humanoid.planning.following import SHARP_TURN, TURN, blocked_step, steps_to_last_line
 from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, shorter
 from humanoid.planning.steering import Ahead, free_ahead
 from humanoid.robot.body import load_body
@@ -73,9 +73,11 @@ class FootstepPlanner(FootstepPlannerBase):
             response.status = int(PlanStatus.INVALID_REQUEST)
             response.message = str(error)[:255]
             return response
-        # Long steps cut corners: where they come too near to something, shorter ones may not.
-        for longest in (request.max_step_length, min(request.max_step_length or _SHORT, _SHORT)):
-            await self._follow(request, places, yaw, longest, response)
+        # Long steps cut corners: where they come too near to something, shorter ones may not, or those of a
+        # body that turns on the spot first.
+        short = min(request.max_step_length or _SHORT, _SHORT)
+        for longest, turn in ((request.max_step_length, TURN), (short, TURN), (short, SHARP_TURN)):
+            await self._follow(request, places, yaw, longest, turn, response)
             if response.status != int(PlanStatus.BLOCKED):
                 break
         return response
@@ -86,13 +88,14 @@ class FootstepPlanner(FootstepPlannerBase):
         places: tuple[tuple[float, float], ...],
         yaw: float,
         longest: float,
+        turn: float,
         response: FollowPath.Response,
     ) -> None:
-        """Fill in the response for steps of a length."""
+        """Fill in the response for steps of a length, and turns on the spot from an angle on."""
         limits = shorter(self._limits, longest)
         start = messages.read_stance(request.start)
         leg = data.Leg(request.first_leg) if request.first_leg else None
-        steps, stance = steps_to_last_line(start, places, limits, leg, request.first_index)
+        steps, stance = steps_to_last_line(start, places, limits, leg, request.first_index, turn)
         index = request.first_index + len(steps)
         asked = PlanFootsteps.Request(
             start=messages.stance(stance, messages.nanoseconds(request.start.header.stamp)),

@@ -22,7 +22,9 @@ NEAREST = 0.35
 The hands are 0.27 m aside, and the body sways by 0.05 m.
 """
 
-_TURN = 0.7  # rad beside the way from which the body only turns; the nearer to it, the shorter its steps
+TURN, SHARP_TURN = 0.7, 0.15
+"""How far beside the way the body only turns [rad]; the nearer to that, the shorter its steps."""
+
 _ALIGNED = 0.2  # rad beside the last line up to which the rest of the way is walked straight
 
 
@@ -32,10 +34,12 @@ def steps_to_last_line(
     limits: StepLimits,
     first_leg: Leg | None,
     first_index: int,
+    turn: float = TURN,
 ) -> tuple[list[Footstep], Stance]:
     """The steps along a route until the body faces the goal on its last line, and the stance after them.
 
-    The first place of the route is where the body is. A route of one line needs no steps.
+    The first place of the route is where the body is. A route of one line needs no steps. The body only turns
+    when it faces more than `turn` [rad] beside the way.
     """
     base = start.centre
     steps: list[Footstep] = []
@@ -52,7 +56,7 @@ def steps_to_last_line(
         if lengths[-1] - along < limits.near:
             break
         target = _at(route, lengths, along + max(AHEAD, limits.forward))
-        base = advance(base, leg, _motion(base, target, limits), limits)
+        base = advance(base, leg, _motion(base, target, limits, turn), limits)
         steps.append(footstep(first_index + len(steps), leg, base, limits))
         leg = leg.other
     if not steps:
@@ -86,10 +90,12 @@ def _first_leg(base: Array, route: Sequence[tuple[float, float]]) -> Leg:
     return Leg.LEFT if error > 0 else Leg.RIGHT
 
 
-def _motion(base: Array, target: tuple[float, float], limits: StepLimits) -> tuple[float, float, float]:
+def _motion(
+    base: Array, target: tuple[float, float], limits: StepLimits, turn: float
+) -> tuple[float, float, float]:
     """The next motion of the body in its own frame: towards a point, turning first if that is beside it."""
     error = wrap(math.atan2(target[1] - base[1], target[0] - base[0]) - base[2])
-    forward = limits.forward * max(0.0, 1.0 - abs(error) / _TURN)
+    forward = limits.forward * max(0.0, 1.0 - abs(error) / turn)
     return forward, 0.0, error
 
 
