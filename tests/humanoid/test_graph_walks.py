@@ -44,10 +44,9 @@ def test_walks_twelve_steps_by_sensors_and_by_the_true_state() -> None:
         ("walk_straight", [], {"seed": 1}), ("walk_straight", [], {"noise": False, "true_state": True})
     )
     assert by_sensors["steps"] == by_truth["steps"] == len(by_truth["foot_errors"]) == 12
-    assert by_sensors["foot_error"] < 0.040
-    assert by_truth["foot_error"] < 0.010
-    # Only what it senses differs: the plan is the same.
-    assert by_truth["foot_error"] < by_sensors["foot_error"]
+    # Its feet stray as much by the true state: little of that is what it senses.
+    assert by_sensors["foot_error"] < 0.015
+    assert by_truth["foot_error"] < 0.012
 
 
 @pytest.mark.slow

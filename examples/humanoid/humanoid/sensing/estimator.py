@@ -19,6 +19,7 @@ _SETTLED, _SETTLING_TIME, _CARRIES = 0.2, 80_000_000, 0.6
 # Seconds in which soles correct the tilt, and rad of it that they show at most: pushed, a robot stands on the
 # edge of a foot.
 _LEVELLING, _EDGE = 1.0, 0.02
+_GAIT_VALID = 200_000_000  # ns after which a controller that is silent no longer lets its foot swing
 _IDLE = 0.1  # share of the weight below which a foot does not count
 _SWINGING = {Support.LEFT: 1, Support.RIGHT: 0}  # support: the side in the air
 
@@ -112,7 +113,9 @@ class StateEstimator:
 
     def _weigh(self, now: int, wrenches: tuple[FootWrench, FootWrench], gait: GaitState | None) -> None:
         """The weight of each foot in the estimate: the load on it, but zero before it has settled."""
-        support = gait.stance.support if gait else Support.BOTH
+        support = Support.BOTH
+        if gait is not None and now - gait.stamp <= _GAIT_VALID:
+            support = gait.stance.support
         left, right = (max(0.0, float(wrench.force[2])) for wrench in wrenches)
         carried = left / (left + right) if left + right > 1.0 else 0.5
         if support in _SWINGING:

@@ -16,7 +16,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
-from types import MappingProxyType
+from types import FrameType, MappingProxyType
 from typing import Any
 
 import rclpy
@@ -142,7 +142,7 @@ def main() -> None:
     parameters, replaced, group, *names = sys.argv[1:]
     nodes: list[Node] = []
     with contextlib.suppress(KeyboardInterrupt):  # whenever it comes
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        signal.signal(signal.SIGINT, _interrupt)
         threading.Thread(target=_end_with_parent, daemon=True).start()
         rclpy.init(args=[])
         with until_shutdown():
@@ -153,10 +153,20 @@ def main() -> None:
             # The present objects stay alive: the collector need not examine them again, which takes 20 ms.
             gc.freeze()
             executor.spin()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # terminal, parent and stdin may each send it
+    signal.signal(signal.SIGINT, _ignore)
     for node in nodes:
         node.destroy_node()
     rclpy.try_shutdown()
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Raise KeyboardInterrupt, once: terminal, parent and stdin may each send the signal."""
+    signal.signal(signal.SIGINT, _ignore)
+    raise KeyboardInterrupt
+
+
+def _ignore(number: int, frame: FrameType | None) -> None:
+    """Do nothing. Unlike SIG_IGN it may be set while a signal is on its way."""
 
 
 def _end_with_parent() -> None:
