@@ -21,9 +21,9 @@ PEERS = ("numpy", "ros-rclpy", "ros-rosidl-generator-py", "rosbags", "mcap-ros2-
 INTRODUCTION = """\
 # Benchmarks
 
-The figures of a section are from one run on one machine, with the peers measured side by side in the same run.
-`make bench` measures all again, `python benchmarks/run.py --replace NAME` one section. Ratios say more than seconds,
-which depend on the machine and its load.
+The figures of a section are from one run on one machine, with the peers measured side by side in it.
+`make bench` measures all again, `python benchmarks/run.py --replace NAME` one section. Ratios say more than
+seconds, which depend on the machine and its load.
 """
 
 
