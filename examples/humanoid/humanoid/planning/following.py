@@ -16,10 +16,10 @@ from .footsteps import StepLimits, advance, beside, footstep
 AHEAD = 0.30
 """How far ahead of the body the point is that it walks to, at least [m]; a long step looks farther."""
 
-NEAREST = 0.35
+NEAREST = 0.38
 """No step takes the body nearer to an obstacle than this [m], unless it leads away from it.
 
-The hands are 0.27 m aside, and the body sways by 0.05 m.
+The hands are 0.27 m aside, the body sways by 0.05 m, and the map errs by as much.
 """
 
 TURN, SHARP_TURN = 0.7, 0.15
