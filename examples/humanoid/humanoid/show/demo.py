@@ -129,8 +129,7 @@ class _Show:
         self._options = options
         self._name = "idle" if options.idle else Path(options.scenario).stem
         self._scenario = {} if options.idle else read(options.scenario)
-        wants = options.camera is None and needs_eyes(self._scenario)
-        self._sees = options.sees or wants
+        self._sees = options.sees or (options.camera is None and needs_eyes(self._scenario))
         self._started: float | None = None  # when the first task began, real time
         self._has_invited = False
         self._line = report.ProgressLine()

@@ -23,7 +23,8 @@ from ...planning.choreography import DANCES
 from ...planning.tasks import task_of
 from ...ros import messages
 from ..audience import PUSH_TIME, Audience
-from .scenes import SIMULATOR, Answer, Refusal, Scene, Scenes, require
+from ..crew import SIMULATOR
+from .scenes import Answer, Refusal, Scene, Scenes, require
 
 _STRONGEST = 60.0  # N s
 _FARTHEST = 15.0  # m from the origin

@@ -11,11 +11,11 @@ from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from ..crew import SIMULATOR
 from ..scenarios import Parameters, ScenarioFileError, names, read
 
 Answer = Callable[[bool, str], None]
 
-SIMULATOR = "humanoid_simulator"
 _TASKS, _EVENTS = "high_level_task_manager", "audience"
 
 
