@@ -185,6 +185,20 @@ def test_events_start_and_end_processes(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+def test_what_ends_slowly_does_not_hide_what_ended_the_launch(tmp_path: Path) -> None:
+    text = f"""{HEAD}
+    deaf = ExecuteProcess(
+        cmd=["sh", "-c", "trap '' INT TERM; echo ready; while :; do sleep 0.1; done"],
+        output="screen", sigterm_timeout="0.2", sigkill_timeout="0.2")
+    ends = ExecuteProcess(cmd=["sh", "-c", "exit 3"], on_exit=Shutdown())
+    return LaunchDescription([deaf, RegisterEventHandler(OnProcessIO(target_action=deaf, on_stdout=lambda _: ends))])
+"""
+    code, lines = launch(tmp_path, text)
+    assert code == 3
+    assert any("escalating to 'SIGKILL'" in line for line in lines)
+
+
+@pytest.mark.slow
 def test_what_does_not_end_is_ended(tmp_path: Path) -> None:
     text = f"""{HEAD}
     return LaunchDescription([ExecuteProcess(

@@ -114,10 +114,12 @@ class Driver(Protocol):
         ...
 
 
-# On Windows a thread that waits for a lock hears no Ctrl-C.
-_IS_DEAF = sys.platform == "win32"
 # A lock cannot, or should not, wait longer than this [s]; longer waits go in several steps.
-_LONGEST_SLEEP = 0.1 if _IS_DEAF else min(threading.TIMEOUT_MAX, 1e6)
+_LONGEST_SLEEP = min(threading.TIMEOUT_MAX, 1e6)
+# The same for the main thread, which must hear Ctrl-C. On Windows a thread that waits for a lock hears none.
+# Elsewhere, Python notes a signal that comes just before a wait, and then waits: also for long, if other
+# threads keep the interpreter busy at that moment.
+_LONGEST_OF_MAIN = 0.1 if sys.platform == "win32" else 0.5
 
 
 class SystemDriver:
@@ -140,13 +142,15 @@ class SystemDriver:
     def wait(self, waker: Waker, until: int | None) -> bool:
         """Block this thread until it is woken (True), or until the steady time (False; None: no end)."""
         me = _thread.get_ident()
+        is_main = me == threading.main_thread().ident
+        longest = _LONGEST_OF_MAIN if is_main else _LONGEST_SLEEP
         self._waiting[me] = waker
         try:
-            while until is not None or _IS_DEAF:
+            while until is not None or is_main:
                 left = inf if until is None else (until - self.monotonic_ns()) / 1e9
-                if left <= _LONGEST_SLEEP:
+                if left <= longest:
                     return waker.sleep(max(left, 0.0))
-                if waker.sleep(_LONGEST_SLEEP):
+                if waker.sleep(longest):
                     return True
             return waker.sleep(-1)
         finally:

@@ -320,10 +320,8 @@ def test_a_signal_ends_no_wait_but_its_handler_may(make_waker: Callable[[], timi
     assert len(signals) >= 5
 
 
-def test_where_a_wait_hears_no_ctrl_c_it_goes_in_short_steps(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As on Windows."""
-    monkeypatch.setattr(timing, "_IS_DEAF", True)
-    monkeypatch.setattr(timing, "_LONGEST_SLEEP", 0.25)
+def test_the_main_thread_waits_in_short_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(timing, "_LONGEST_OF_MAIN", 0.25)
     steps: list[float] = []
 
     class Sleeper(timing.Waker):
@@ -338,6 +336,25 @@ def test_where_a_wait_hears_no_ctrl_c_it_goes_in_short_steps(monkeypatch: pytest
     steps.clear()
     assert not system.wait(Sleeper(), 375_000_000)
     assert steps == [0.25, 0.125]
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_kill"), reason="this system sends no signals to threads")
+@pytest.mark.parametrize("make_waker", [timing.Waker, lambda: timing.SYSTEM.waker(lasting=True)])
+def test_a_signal_that_interrupts_no_wait_is_heard_soon(make_waker: Callable[[], timing.Waker]) -> None:
+    """As one that comes in the moment before the wait: it reaches another thread here."""
+    waker = make_waker()
+    before = signal.signal(signal.SIGUSR1, lambda *_: waker.wake())
+
+    def send() -> None:
+        signal.pthread_kill(threading.get_ident(), signal.SIGUSR1)
+
+    timer = threading.Timer(0.05, send)
+    timer.start()
+    try:
+        assert timing.wait(waker, timing.monotonic_ns() + 20 * 10**9)
+    finally:
+        timer.join()
+        signal.signal(signal.SIGUSR1, before)
 
 
 @pytest.mark.skipif(not hasattr(os, "eventfd"), reason="executors have file descriptors on Linux only")

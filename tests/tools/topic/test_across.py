@@ -46,6 +46,7 @@ try:
 except BaseException:
     pass
 """
+NOT_YET = b"WARNING: topic [/silent] does not appear to be published yet\n"
 BOTH = ["local", pytest.param("rclpy", marks=pytest.mark.slow)]
 
 
@@ -123,7 +124,7 @@ def test_who_hears_nothing_ends_as_well(
             assert stdout.readline() == b"somebody listens\n"
             tool.send_signal(number)
             said = tool.communicate(timeout=30)[1]
-        return tool.returncode, said
+        return tool.returncode, said.removeprefix(NOT_YET)  # real rclpy may find the talker late
 
     assert again_if_crashed(transport, run, lambda ended: ended[0]) == (number, b"")
 

@@ -186,7 +186,10 @@ class LaunchHost:
         """Note that a process has come to its end, and is not respawned."""
         if process in self.running:
             self.running.remove(process)
-        self.exit_code = max(self.exit_code, process.failure)
+        if process.is_stopping:  # a slow end must not hide what ended the launch
+            self.exit_code = self.exit_code or process.failure
+        else:
+            self.exit_code = max(self.exit_code, process.failure)
 
     def _shut_down(self, event: Shutdown) -> None:
         self.context.is_shutdown = True
