@@ -11,6 +11,7 @@ from humanoid.data import SECOND, STOP_CALLED, GaitState, JointStates, Leg, Mode
 from humanoid.planning import dance
 from humanoid.planning.choreography import DANCES
 from humanoid.planning.events import Event, event_of
+from humanoid.planning.following import steps_to_last_line
 from humanoid.planning.footsteps import (
     PlanStatus,
     StepLimits,
@@ -18,6 +19,7 @@ from humanoid.planning.footsteps import (
     plan_footsteps,
     shorter,
 )
+from humanoid.planning.gait import GaitPlanner
 from humanoid.planning.navigation import Navigation
 from humanoid.planning.task_manager import TaskManager
 from humanoid.planning.tasks import Task, task_of, words_of
@@ -71,6 +73,25 @@ def test_plans_lead_to_the_goal_in_steps_that_legs_can_take(
     assert math.hypot(centre[0] - x, centre[1] - y) < 3e-3
     assert abs(wrap(centre[2] - yaw)) < 3e-3
     assert np.allclose(to_frame(feet[1], feet[0][:2]), (0.0, 0.18), atol=1e-3)
+
+
+@pytest.mark.parametrize("ahead", [Leg.LEFT, Leg.RIGHT])
+def test_a_walk_that_was_broken_off_goes_on_with_the_foot_behind(ahead: Leg) -> None:
+    feet = [foot.copy() for foot in HERE.feet]
+    feet[ahead.side][0] = 0.33
+    stance = Stance(Support.BOTH, (feet[0], feet[1]))
+    route = [(0.165, 0.0), (1.0, 0.02 * ahead.sign), (2.0, 0.0), (3.0, 0.0)]
+    planner = GaitPlanner(LIMITS)
+    planner.velocity(0.5, 0.0, 0.1 * ahead.sign)  # the leg on this side would rather begin
+    steered = planner.update(GaitState(SECOND, Mode.STANDING, "", stance, 0, 4, 0.0))
+    assert steered is not None
+    for steps in (
+        plan_footsteps(stance, (2.0, 0.0, 0.0)).plan.steps,
+        steps_to_last_line(stance, route, LIMITS, None, 4)[0],
+        steered.steps,
+    ):
+        assert steps[0].leg is ahead.other
+        assert abs(steps[0].x - 0.33) < LIMITS.forward
 
 
 def _answer(goal: tuple[float, float, float], ground: Ground | None = None, stance: Stance = HERE) -> str:

@@ -24,6 +24,7 @@ from humanoid.seeds import generator
 from humanoid.simulation.battery import BatteryPack
 from humanoid.simulation.rendering import HeadCamera, RenderingError
 from humanoid.simulation.sim import QUIET, Noise, Simulator
+from humanoid.simulation.waiting import Waiting
 from humanoid_interfaces.msg import ObstacleMotion, ObstacleTouch
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.parameter import Parameter
@@ -97,7 +98,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self._health.takes("set-points", f"/joint_commands: {error}")
             return
         self.simulator.protect(command)
-        self._alone, self._commanded = False, True
+        self._commanded = True
+        self._waiting.answered(time.monotonic())
         if command.stamp == self.stamp:
             self._answered = True
             if self.parameters.lockstep and not self._paused:
@@ -150,7 +152,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             return
         if not self._commanded:
             # The robot is not left on its own before there is a node that balances it.
-            if time.monotonic() - self._sent > self.parameters.patience:
+            if self._waiting.is_over(time.monotonic(), self.parameters.patience):
                 self._publish()  # nobody was there to receive it the first time
             self._restart_wall()
         elif not self.parameters.lockstep:
@@ -163,9 +165,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
                 self._step()
         elif self._answered:
             self._step_in_time()
-        elif self._alone or time.monotonic() - self._sent > self.parameters.patience:
-            # After one wait without an answer, the controller is not awaited again until it is heard.
-            self._alone = True
+        elif self._waiting.is_over(time.monotonic(), self.parameters.patience):
+            self._waiting.alone = True
             text = f"no set-points from {_COMMANDER}: time goes on without them"
             self.get_logger().warning(text, throttle_duration_sec=5.0)
             self._step()
@@ -177,7 +178,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._due: dict[str, int] = {}  # things that are due periodically, and when they are due next
         self._sensors: data.Sensors | None = None
         self._commanded = False
-        self._alone = False  # nobody answers any longer
+        self._waiting = Waiting()
         self._restart_wall()
         self.publish_obstacles(obstacle_markers(self.simulator.obstacles.solids, self.stamp))
         self._publish()
@@ -249,7 +250,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         """Publish all sensor values of this moment, and then the time."""
         sensors = self._sensors = self._sensors or self.simulator.sensors()
         self._answered = False
-        self._sent = time.monotonic()
+        self._waiting.begin(time.monotonic())
         self.publish_joint_encoders(messages.joint_states(sensors.joints, self._model.body.joints))
         self.publish_imu_data(messages.imu(sensors.imu))
         self.publish_l_foot_wrench(messages.wrench(sensors.wrenches[0], "l_ankle"))

@@ -11,7 +11,7 @@ import numpy as np
 from ..data import Footstep, Leg, Stance, Support
 from ..robot.grid import nearest
 from ..spatial import Array, wrap
-from .footsteps import StepLimits, advance, beside, footstep
+from .footsteps import StepLimits, advance, beside, footstep, is_easy
 
 AHEAD = 0.30
 """How far ahead of the body the point is that it walks to, at least [m]; a long step looks farther."""
@@ -41,12 +41,29 @@ def steps_to_last_line(
     The first place of the route is where the body is. A route of one line needs no steps. The body only turns
     when it faces more than `turn` [rad] beside the way.
     """
-    base = start.centre
-    steps: list[Footstep] = []
     if len(route) < 3:
-        return steps, start
+        return [], start
+    likely = _first_leg(start.centre, route)
+    legs = [first_leg] if first_leg else [likely, likely.other]
+    walks = [_steps_of(leg, start.centre, route, limits, first_index, turn) for leg in legs]
+    steps = next((steps for steps in walks if steps and is_easy(start, steps[0], limits)), walks[0])
+    feet = list(start.feet)
+    for step in steps[-2:]:
+        feet[step.leg.side] = step.pose
+    return steps, Stance(Support.BOTH, (feet[0], feet[1])) if steps else start
+
+
+def _steps_of(
+    leg: Leg,
+    base: Array,
+    route: Sequence[tuple[float, float]],
+    limits: StepLimits,
+    first_index: int,
+    turn: float,
+) -> list[Footstep]:
+    """The steps of a walk along a route that this leg begins."""
+    steps: list[Footstep] = []
     lengths = [0.0, *itertools.accumulate(itertools.starmap(math.dist, itertools.pairwise(route)))]
-    leg = first_leg or _first_leg(base, route)
     along = 0.0
     while len(steps) < limits.most // 2:
         along = max(along, _project(base, route, lengths, along))
@@ -59,12 +76,7 @@ def steps_to_last_line(
         base = advance(base, leg, _motion(base, target, limits, turn), limits)
         steps.append(footstep(first_index + len(steps), leg, base, limits))
         leg = leg.other
-    if not steps:
-        return steps, start
-    feet = list(start.feet)
-    for step in steps[-2:]:
-        feet[step.leg.side] = step.pose
-    return steps, Stance(Support.BOTH, (feet[0], feet[1]))
+    return steps
 
 
 def blocked_step(steps: Sequence[Footstep], points: Array, base: Array, limits: StepLimits) -> str:

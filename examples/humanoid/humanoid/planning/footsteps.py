@@ -20,6 +20,8 @@ from ..robot.ground import Ground
 from ..robot.table import STANCE_WIDTH
 from ..spatial import Array, from_frame, to_frame, wrap
 
+_SLACK = 0.02  # metres by which feet land beside their places in an ordinary walk
+
 
 class PlanStatus(IntEnum):
     """The outcome of planning, as in PlanFootsteps.srv."""
@@ -97,6 +99,15 @@ def footstep(index: int, leg: Leg, base: Array, limits: StepLimits) -> Footstep:
     return Footstep(index, leg, x, y, yaw, limits.step_time)
 
 
+def is_easy(start: Stance, first: Footstep, limits: StepLimits) -> bool:
+    """Whether a first step lands no farther from the other foot than a step straight ahead does.
+
+    After a walk that was broken off, one foot is ahead: it must not take the first step, away from the other.
+    """
+    away = math.hypot(*(first.pose - start.feet[first.leg.other.side])[:2])
+    return away < math.hypot(limits.forward, limits.width) + _SLACK
+
+
 def advance(base: Array, leg: Leg, motion: Sequence[float] | Array, limits: StepLimits) -> Array:
     """The body's planar pose after a step of this leg: moved by (forward, left, turn), within its limits.
 
@@ -139,7 +150,7 @@ def plan_footsteps(
         distance = math.hypot(goal[0] - start.centre[0], goal[1] - start.centre[1])
         message = f"the goal is {distance:.1f} m away: more than the {limits.most} steps that a plan can hold"
         return PlanResult(PlanStatus.TOO_FAR, message, nothing)
-    steps = min(plans, key=len)
+    steps = min(plans, key=lambda steps: (not is_easy(start, steps[0], limits), len(steps)))
     for step in steps:
         if problem := ground.problem(step.x, step.y):
             message = f"step {step.index - first_index + 1} of {len(steps)}: {problem}"

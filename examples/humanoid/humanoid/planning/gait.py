@@ -14,7 +14,7 @@ import numpy as np
 from ..control.pace import Pace
 from ..data import Footstep, FootstepPlan, GaitState, Leg, Mode, Stance, Support
 from ..spatial import Array, from_frame, wrap
-from .footsteps import StepLimits, advance, beside, footstep
+from .footsteps import StepLimits, advance, beside, footstep, is_easy
 
 _AHEAD = 3  # steps that are planned from a velocity, before the one that joins the feet
 _STANDING = {Mode.STANDING, Mode.HOLDING, Mode.FALLEN, Mode.EMERGENCY_STOP}
@@ -122,21 +122,28 @@ class GaitPlanner:
             base = state.stance.centre
             sideways = self._velocity[1] or self._velocity[2]
             leg = Leg.LEFT if sideways > 0 else Leg.RIGHT
+            if not is_easy(state.stance, self._ahead(base, leg, 0)[0], self._limits):
+                leg = leg.other
         else:
             if self._plan.steps and self._plan.steps[0].index == state.footstep_index:
                 return  # the weight is already moving: wait for the foot to leave the ground
             leg = self._next_leg(state)
             base = _body_of(state.stance.feet[leg.other.side], leg.other, self._limits.width)
-        index = state.footstep_index + len(steps)
-        for _ in range(_AHEAD):
-            motion = self._velocity * self._step_period
-            motion[1] *= 2  # only every other step moves sideways
-            base = advance(base, leg, motion, self._limits)
-            steps.append(footstep(index, leg, base, self._limits))
-            index, leg = index + 1, leg.other
-        steps.append(footstep(index, leg, base, self._limits))
+        steps += self._ahead(base, leg, state.footstep_index + len(steps))
         if not _same_steps(steps, self._plan.steps):
-            self._publish(tuple(steps), (float(base[0]), float(base[1]), float(base[2])))
+            goal = _body_of(steps[-1].pose, steps[-1].leg, self._limits.width)
+            self._publish(tuple(steps), (float(goal[0]), float(goal[1]), float(goal[2])))
+
+    def _ahead(self, base: Array, leg: Leg, index: int) -> list[Footstep]:
+        """The next steps at the wanted velocity, and the one that joins the feet."""
+        motion = self._velocity * self._step_period
+        motion[1] *= 2  # only every other step moves sideways
+        steps: list[Footstep] = []
+        for _ in range(_AHEAD):
+            base = advance(base, leg, motion, self._limits)
+            steps.append(footstep(index + len(steps), leg, base, self._limits))
+            leg = leg.other
+        return [*steps, footstep(index + len(steps), leg, base, self._limits)]
 
     def _under_way(self, state: GaitState) -> Footstep | None:
         """The step whose foot is in the air, with its planned landing."""
