@@ -82,6 +82,8 @@ def test_a_node_that_cannot_begin_ends_the_launch() -> None:
         ("without:=tail", "the robot has no node 'tail': it has battery_monitor, "),
         ("transport:=zenoh", "transport:=zenoh: expected auto, local or rclpy"),
         ("seed:=many", "seed:=many: expected a whole number"),
+        ("camera:=yes", "camera:=yes: expected auto, true or false"),
+        ("noise:=some", "noise:=some: expected true or false"),
         ("speed:=fast", "speed:=fast: expected a number"),
     ],
 )

@@ -48,7 +48,7 @@ def _robot(context: LaunchContext) -> list[LaunchDescriptionEntity]:
     if said["transport"] not in {"auto", "local", "rclpy"}:
         raise ValueError(f"transport:={said['transport']}: expected auto, local or rclpy")
     files = [said["parameters"]]
-    sees = said["camera"].lower() in {"true", "1"}
+    sees = said["camera"] != "auto" and _truth("camera", said, "auto, true or false")
     if said["scenario"] != IDLE:
         files.append(str(scenarios.find(said["scenario"])))
         sees |= said["camera"] == "auto" and scenarios.needs_eyes(scenarios.read(said["scenario"]))
@@ -89,10 +89,17 @@ def _values(name: str, said: dict[str, str]) -> dict[str, Any]:
     if name == crew.SIMULATOR:
         values |= {
             "seed": _number("seed", said, int, "a whole number"),
-            "noise": said["noise"].lower() in {"true", "1"},
+            "noise": _truth("noise", said, "true or false"),
             "speed": _number("speed", said, float, "a number"),
         }
     return values
+
+
+def _truth(name: str, said: dict[str, str], expected: str) -> bool:
+    word = said[name].lower()
+    if word not in {"true", "1", "false", "0"}:
+        raise ValueError(f"{name}:={said[name]}: expected {expected}")
+    return word in {"true", "1"}
 
 
 def _number(name: str, said: dict[str, str], kind: type[Any], expected: str) -> Any:
