@@ -84,6 +84,53 @@ def test_nodes_die_at_any_moment(model: HumanoidModel, node: str) -> None:
         assert not robot.fell
 
 
+@pytest.mark.parametrize("seed", [0, 1])
+def test_the_controller_goes_on_from_where_the_servos_have_brought_the_robot(
+    model: HumanoidModel, seed: int
+) -> None:
+    robot = _walking(model, seed, 2.1)
+    robot.dead.add("whole_body_controller")
+    robot.run(0.2)
+    robot.dead.clear()
+    robot.run(0.3)
+    assert robot.standby.reason
+    before = robot.simulator.sole_truth()
+    robot.simulator.push(np.array([200.0, 0.0, 0.0]), 0.1)
+    robot.run(1.5)
+    after = robot.simulator.sole_truth()
+    moved = [math.dist(foot[:2], there[:2]) for foot, there in zip(before.feet, after.feet, strict=True)]
+    assert max(moved) > 0.1, "it was to need a step"
+    robot.run(4.0)
+    assert robot.standby.reason == ""
+    assert robot.controller.mode is Mode.STANDING
+    assert robot.go_to((2.0, 0.6, 0.0)) < 0.06
+    assert not robot.fell
+
+
+def test_a_controller_stands_where_somebody_else_has_put_the_robot(model: HumanoidModel) -> None:
+    """As the servos on their own do. They let go once its set-points agree with theirs."""
+    robot = _walking(model, 1, 2.3)
+    stubborn, other = WholeBodyController(model), WholeBodyController(model)
+    beside = Lockstep(model, seed=1, noise=NOISE)
+    sensors = beside.simulator.sensors()
+    for controller in (stubborn, other):
+        controller.tick(beside.simulator.stamp, sensors.joints, sensors.imu, beside.simulator.truth())
+    robot.controller.hold("one foot is ahead")
+    robot.run(2.0)
+    for _ in range(250):
+        now, sensors = robot.simulator.stamp, robot.simulator.sensors()
+        other.begin_here()
+        commands = [
+            controller.tick(now, sensors.joints, sensors.imu, robot.odometry).position
+            for controller in (robot.controller, other, stubborn)
+        ]
+        robot.simulator.apply(JointCommand(now, commands[0]))
+        robot.simulator.step()
+        robot.odometry = robot.estimator.update(sensors.joints, sensors.imu, sensors.wrenches, robot.gait)
+    assert np.abs(commands[1] - commands[0]).max() < 0.1
+    assert np.abs(commands[2] - commands[0]).max() > 0.3
+
+
 def test_holding_ends_when_somebody_says_so(model: HumanoidModel) -> None:
     robot = _walking(model, 1, 2.3)
     robot.controller.hold("somebody knocked")

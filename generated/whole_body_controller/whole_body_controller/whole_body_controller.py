@@ -63,6 +63,7 @@ class WholeBodyController(WholeBodyControllerBase):
         self._stop = data.EmergencyStop(active=False)
         self._stopped = False
         self._servos = ""  # why they hold the robot on their own
+        self._released = False  # by the servos; the weight is not between the feet yet
         self._mode: data.Mode | None = None
         self._said: tuple[object, ...] = ()  # what other nodes use of the last gait state
         self._told = 0  # when
@@ -122,8 +123,7 @@ class WholeBodyController(WholeBodyControllerBase):
 
     def on_servos_standby(self, message: String) -> None:
         """Stand while the servos hold the robot: they release it once set-points would not move them."""
-        if self._servos and not message.data:
-            self._controller.resume()
+        self._released = bool(self._servos and not message.data)
         self._servos = message.data
 
     def handle_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -191,6 +191,10 @@ class WholeBodyController(WholeBodyControllerBase):
             self.get_logger().warning("whoever sent postures is silent: back to standing")
         if self._servos:
             self._controller.hold(f"the servos hold the robot on their own: {self._servos}")
+            self._controller.begin_here()
+        elif self._released and self._controller.stepping.standing:
+            self._released = False
+            self._controller.resume()
         setpoints = self._controller.tick(now, joints, imu, self._odometry.at_or_last(now))
         self._answer = messages.command(setpoints)
         self.publish_whole_body_position_controller_commands(self._answer)

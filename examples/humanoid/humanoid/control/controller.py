@@ -6,6 +6,7 @@ model for kinematics and gravity, as a real robot's controller has robot_descrip
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -47,6 +48,7 @@ _MADE_UP = 5  # missed ticks in a row that the reference catches up with
 # where the pelvis is would need four times as much in one tick, and a lead that large is out of every
 # joint's range.
 _JOINT_SPEED = 20.0
+_UPRIGHT, _STILL = 0.05, 0.05  # rad of the trunk's lean and m/s of the centre of mass of a robot at rest
 _BLEND = 4.0  # 1 / share of a swing in which the leg changes from the wanted pelvis to the measured one
 
 
@@ -79,7 +81,7 @@ class WholeBodyController:
         self._upper = UpperBody(model)
         self._trunk = Trunk(model)
         self._fallen_height = _FALLEN_HEIGHT * model.body.leg_length
-        self._started = False
+        self._started = self._begins = False
         self._reason = ""
         self._fault: int | None = None  # when the fault that the robot holds for was last present
         self._stop = EmergencyStop(active=False)
@@ -125,6 +127,13 @@ class WholeBodyController:
         self._reason = ""
         self._fault = None
 
+    def begin_here(self) -> None:
+        """Stand from wherever the feet are at the next tick: until then somebody else moves the robot."""
+        self._started = False
+        self._trunk = Trunk(self.model)
+        self._prediction = Prediction(self._omega, self._period)
+        self._feedback.reset()
+
     @property
     def mode(self) -> Mode:
         """The present mode of the controller."""
@@ -139,6 +148,12 @@ class WholeBodyController:
         if self.stepping.standing:
             return Mode.STANDING
         return Mode.WALKING if len(self.stepping.steps) > 1 else Mode.STOPPING
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the robot stands, and has nothing left of a push or a hasty landing to make up for."""
+        upright = float(np.abs(self._trunk.lean).max()) < _UPRIGHT
+        return self.stepping.standing and upright and math.hypot(*self._state.com_velocity[:2]) < _STILL
 
     def state(self) -> GaitState:
         """The state of the controller at the last tick; the feet are where it measured them."""
@@ -227,10 +242,10 @@ class WholeBodyController:
         velocity[:2] += self._prediction.gained(state.com[:2], velocity[:2], standing)
         state.set_motion(velocity, odometry.angular_velocity, joints.velocity)
         state.compute_dynamics()
-        if not self._started:
+        self._begins = not self._started
+        if self._begins:
             self._started = True
-            self.stepping.stand([state.planar_sole(side) for side in (0, 1)])
-            self.stepping.com = state.com[:2]
+            self.stepping.stand([state.planar_sole(side) for side in (0, 1)], state.com[:2])
             self._joints = joints.position.copy()
             # The robot may stand higher or lower than it will walk: it goes there slowly.
             floor = min(state.sole(side)[0][2] for side in (0, 1))
@@ -270,7 +285,8 @@ class WholeBodyController:
         way = _JOINT_SPEED * self._elapsed
         wanted = self._inverse_kinematics(sample, targets, heading, height)
         joints = np.clip(wanted, self._joints - way, self._joints + way)
-        velocity = (joints - self._joints) / self._elapsed
+        # The first set-points may be far from where the joints are: they are a place to go to, not a speed.
+        velocity = 0.0 if self._begins else (joints - self._joints) / self._elapsed
         self._joints = joints
         if sample.last_of_swing:
             stepping.touchdown(soles)

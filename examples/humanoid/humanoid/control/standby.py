@@ -23,7 +23,7 @@ _NEAR = 0.15  # rad that their set-points may then differ from those of the stan
 
 
 class Standby:
-    """Takes over when commands stop, until commands arrive that last and agree with its own set-points.
+    """Takes over when commands stop, until it stands still, and commands last and agree with its set-points.
 
     It can also be told to, by `hold`.
     """
@@ -69,7 +69,7 @@ class Standby:
             assert self._controller is not None
         odometry = self._estimator.update(sensors.joints, sensors.imu, sensors.wrenches, None)
         command = self._controller.tick(now, sensors.joints, sensors.imu, odometry)
-        if self._trusts(now, command):
+        if self._controller.at_rest and self._trusts(now, command):
             self._controller, self.reason = None, ""
             return None
         return command

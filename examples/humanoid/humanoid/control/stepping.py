@@ -31,6 +31,7 @@ _LOST = 0.01  # metres of the DCM outside the soles: it will not return without 
 _UNMOVED = 0.03  # metres of its error at which that need not be looked for
 _LOST_LANDED = 0.04  # the same for a robot that has just come to a stand: it sways, and stays if it can
 _LEASH = 0.04  # metres between the centre of mass and its reference
+_SETTLING_TIME, _SETTLING_SPEED = 0.2, 0.05  # s at least, and m/s, until the weight is between the feet
 _LANDING_TIME = 0.3  # seconds until an interrupted swing touches the ground
 
 
@@ -51,13 +52,17 @@ class Stepping:
         half = parameters.stance_width / 2
         self.stand([np.array([0.0, side, 0.0]) for side in (half, -half)])
 
-    def stand(self, feet: Sequence[Array]) -> None:
-        """Start again, standing on both feet (planar poses)."""
+    def stand(self, feet: Sequence[Array], com: Array | None = None) -> None:
+        """Start again, standing on both feet (planar poses).
+
+        The centre of mass moves from where it is (2,) to between them, without haste.
+        """
         self.feet = [foot.copy() for foot in feet]
         self.steps: list[Footstep] = []
-        self.zmp = middle(feet, self._parameters)
+        between = middle(feet, self._parameters)
+        self.zmp = between if com is None else com.copy()
         self.com: Array = self.zmp.copy()  # reference of the centre of mass, (2,)
-        self.sample = self._rebuild(0.2)
+        self.sample = self._rebuild(max(_SETTLING_TIME, math.dist(self.zmp, between) / _SETTLING_SPEED))
 
     @property
     def standing(self) -> bool:

@@ -70,6 +70,7 @@ class Lockstep:
         self.gait: GaitState | None = None
         self.odometry: Odometry | None = None
         self.standby = Standby(self.model)
+        self._rescued = False  # whether the servos have held the robot, and it does not stand since then
         self.dead: set[str] = set()  # nodes that have died
         self.touchdowns: list[Touchdown] = []
         self._delay = np.array(delay)
@@ -116,6 +117,13 @@ class Lockstep:
         stepping = self.controller.stepping
         moving, before = stepping.sample.swing, stepping.taken
         wanted = stepping.landing.copy() if moving else None
+        if self.standby.reason:
+            self.controller.hold(self.standby.reason)
+            self.controller.begin_here()
+            self._rescued = True
+        elif self._rescued and stepping.standing:
+            self.controller.resume()
+            self._rescued = False
         command = self.controller.tick(now, sensors.joints, sensors.imu, self.odometry)
         if stepping.taken > before and moving is not None and wanted is not None:
             landed = self.simulator.sole_truth().feet[moving.leg.side]
