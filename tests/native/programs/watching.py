@@ -60,7 +60,12 @@ if child == 0:
 print("child", os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
 
 peer = rclpy.create_node("peer")
-peer.create_publisher(Theirs, "/one", 10)
+watch = watch_of(careful.context)
+look = watch._look
+watch._look = lambda: None  # while they find each other: the side that is found first would speak
+one = peer.create_publisher(Theirs, "/one", 10)
+spin_until(peer, lambda: one.get_subscription_count() == 2 and unmoved.count_publishers("/one") == 1)
+watch._look = look
 spin_until(peer, lambda: len(heard) >= 2)
 for mismatch in sorted(heard, key=lambda mismatch: mismatch.mine.node):
     print(mismatch.mine.node, mismatch.mine.role, mismatch.policy, mismatch.theirs.definition is not None)
@@ -108,7 +113,6 @@ for number in range(MANY):
     if number % 50 == 49:
         spin_until(careful, lambda number=number: len(heard) >= 1)
     node.destroy_node()
-watch = watch_of(careful.context)
 spin_until(careful, lambda: len(watch._nodes) <= 4)
 print("many", bool(heard), "watched nodes", sorted(node.node().get_name() for node in watch._nodes.values()))
 
