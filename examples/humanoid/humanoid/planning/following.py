@@ -43,10 +43,10 @@ def steps_to_last_line(
     """
     if len(route) < 3:
         return [], start
-    likely = _first_leg(start.centre, route)
-    legs = [first_leg] if first_leg else [likely, likely.other]
-    walks = [_steps_of(leg, start.centre, route, limits, first_index, turn) for leg in legs]
-    steps = next((steps for steps in walks if steps and is_easy(start, steps[0], limits)), walks[0])
+    leg = first_leg or _first_leg(start.centre, route)
+    steps = _steps_of(leg, start.centre, route, limits, first_index, turn)
+    if steps and not first_leg and not is_easy(start, steps[0], limits):
+        steps = _steps_of(leg.other, start.centre, route, limits, first_index, turn)
     feet = list(start.feet)
     for step in steps[-2:]:
         feet[step.leg.side] = step.pose

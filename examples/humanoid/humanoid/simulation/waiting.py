@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Final
 
-_PATIENT: Final = 3.0  # times as long as answers took lately, and nobody is late who is merely busy
+_PATIENT: Final = 3.0  # times as long as answers took lately: more than a busy node needs
 _FORGETTING: Final = 0.98  # of a slow answer, with each later one
 
 
 class Waiting:
     """Waits `patience` once, and after that about as long as answers used to take, until one comes again.
 
-    Other nodes still work on the readings. Time that ran ahead of them would leave them nothing to catch the
-    robot with.
+    While one node is silent, the others still work on the readings. Time that ran ahead of them would leave
+    them nothing to catch the robot with.
     """
 
     def __init__(self) -> None:

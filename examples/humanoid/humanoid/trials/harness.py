@@ -70,7 +70,7 @@ class Lockstep:
         self.gait: GaitState | None = None
         self.odometry: Odometry | None = None
         self.standby = Standby(self.model)
-        self._rescued = False  # whether the servos have held the robot, and it does not stand since then
+        self._rescued = False  # by the servos, and the weight is not between the feet yet
         self.dead: set[str] = set()  # nodes that have died
         self.touchdowns: list[Touchdown] = []
         self._delay = np.array(delay)
