@@ -13,6 +13,8 @@ from pathlib import Path
 import pytest
 from ifgen import resources
 
+from tests.real_rclpy import again_if_crashed
+
 pytestmark = pytest.mark.timeout(300)
 REAL = find_spec("rpyutils") is not None
 FILE = resources.humanoid() / "launch" / "humanoid.launch.py"
@@ -37,7 +39,8 @@ def short(tmp_path: Path) -> Path:
     ["local", pytest.param("rclpy", marks=pytest.mark.skipif(not REAL, reason="no real rclpy"))],
 )
 def test_it_walks_with_a_process_for_each_node(transport: str, short: Path) -> None:
-    done = launched("--transport", transport, "humanoid", "humanoid.launch.py", f"scenario:={short}")
+    words = ("--transport", transport, "humanoid", "humanoid.launch.py", f"scenario:={short}")
+    done = again_if_crashed(transport, lambda: launched(*words), lambda ended: ended.returncode)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "Traceback" not in done.stdout + done.stderr
     rows = dict(re.findall(r"^\[director-\d+\]   (\S.*?)  +(\S.*)$", done.stdout, re.MULTILINE))
