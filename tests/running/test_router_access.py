@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,6 +17,7 @@ from tests.running.terminals import Terminal
 pytest.importorskip("zenoh")
 
 PAGE = Path(__file__).parents[2] / "docs/processes.md"
+CAMERA, NOTICES = (str(Path(__file__).parent / "peers" / name) for name in ("camera.py", "notices.py"))
 
 
 @pytest.fixture(scope="module")
@@ -86,6 +89,37 @@ def test_access_control_keeps_a_topic_from_who_has_a_certificate(
     assert not any(line.startswith("heard") for line in peers["command"].so_far())
     peer("near_command", "talk", "cmd_vel", near)
     peers["command"].until("heard")
+
+
+@pytest.mark.slow
+def test_notices_of_shared_memory_do_not_pass_by_access_control(
+    site: Site, endpoints: list[str], authorities: dict[str, Path]
+) -> None:
+    near, far = endpoints[0], endpoints[1].replace("tcp", "tls")
+    ours = authorities["ours"]
+    (rules,) = _blocks("Access control", "json5")
+    site.router("--config", _router_file(site.folder, near, far, ours, rules))
+    remapping = ("--ros-args", "-r", "count:=cmd_vel")
+    robot = site.peer("robot", "listen", near, *remapping)
+    watcher = site.program(CAMERA, "watch", "0", "10", at=near)
+    site.program(CAMERA, "show", "400000", "0.05", "100000", "1", at=near)
+    watcher.until("number")
+    robot.until("nodes camera robot watcher")
+    override = dict(pair.split("=") for pair in _override(ours, ours).split(";") if "=" in pair)
+    settings = {path.strip(): json.loads(value) for path, value in override.items()}
+    settings |= {"mode": "client", "connect/endpoints": [far]}
+    words = (site.environment["ROS_DOMAIN_ID"], json.dumps(settings), "robot", "camera")
+    laptop = subprocess.Popen(
+        [sys.executable, NOTICES, *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    with laptop:
+        assert laptop.stdout is not None
+        assert laptop.stdout.readline() == "sent\n"
+        site.peer("command", "talk", near, *remapping)
+        robot.until("heard")
+        laptop.kill()
+    assert "heard 0" not in robot.so_far()
+    watcher.until("number")
 
 
 def _router_file(folder: Path, near: str, far: str, authority: Path, more: str = "{}") -> str:

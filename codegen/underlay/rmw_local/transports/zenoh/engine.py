@@ -94,8 +94,9 @@ class ZenohTransport:
             raise TransportError(f"Zenoh says: {reason(error)}") from None
         self._id = str(self._session.zid())
         self._liveliness = self._session.liveliness()
-        self._lending = Lending(self._session, self._gate, self._background, self._domain, self.malformed)
-        self._calls = Calls(self._session, self._gate, self._background, self._domain, self.malformed)
+        parts = self._session, self._gate, self._background, self._domain, self.malformed
+        self._lending = Lending(*parts, is_private=self._is_private)
+        self._calls = Calls(*parts)
         if self._is_private:
             self._calls.begin()
         self._followed: list[Any] = [
@@ -236,7 +237,7 @@ class ZenohTransport:
         else:
             declared = self._session.declare_subscriber(key, handler, allowed_origin=Locality.REMOTE)
         token = self._written(subscription)
-        listening = self._lending.listen(tokens.gid_of(token), on_sample)
+        listening = self._lending.listen(tokens.gid_of(token), key, on_sample)
         return Presence(self._gate, *self._declared(token), declared, listening)
 
     def ask(self, client: Entity, on_reply: OnReply, on_over: OnOver) -> Asking:
@@ -348,7 +349,10 @@ class ZenohTransport:
             return
         known = self._unpacked(attached)
         if known is not None:
-            on_sample(sample.payload.to_bytes(), *known)
+            data = sample.payload.to_bytes()
+            if len(data) >= self._lending.threshold:
+                self._lending.keep()
+            on_sample(data, *known)
 
     def _on_request(self, on_request: OnRequest, serving: Serving, key: str, query: zenoh.Query) -> None:
         known = self._unpacked(query.attachment)
