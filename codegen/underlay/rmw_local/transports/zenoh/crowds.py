@@ -1,0 +1,103 @@
+"""The publishers, subscribers and tokens of sessions that have very many.
+
+Zenoh compares each one that is declared with all that are there, in each process: 4,000 topics took a process
+8 to 15 s. Beyond the first ones, subscriptions share one subscriber to all topics of the domain, and
+publishers send by key. Such a process gets messages that nobody in it wants, and publishers there do not
+notice who listens without being announced. Tokens of private sessions get keys that have less in common.
+"""
+
+from __future__ import annotations
+
+import _thread
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import zenoh
+from zenoh import Locality
+
+from rmw_local.transports.zenoh import tokens
+
+if TYPE_CHECKING:
+    from rmw_local.transports.zenoh.presence import Gate
+
+_MOST: Final = 500
+"""The number of publishers, of subscriptions and of tokens that are declared as everywhere."""
+
+Handler = Callable[[zenoh.Sample], object]
+
+
+class Crowds:
+    """What one session publishes and subscribes to."""
+
+    def __init__(self, session: zenoh.Session, gate: Gate, domain: int, *, is_private: bool) -> None:
+        self._session = session
+        self._is_private = is_private
+        self._gate = gate
+        self._everything = f"{domain}/**"
+        self._publishers = self._subscribers = self._tokens = 0
+        self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
+        self._hearing: dict[str, tuple[Handler, ...]] = {}  # by key; what shares a subscriber
+        self._shared: object = None
+
+    def token(self, text: str) -> zenoh.LivelinessToken:
+        """Declare a token, with its own key or another one: rmw_zenoh, which knows no other, is not there."""
+        with self._lock:
+            self._tokens += 1
+            is_one_of_many = self._is_private and self._tokens > _MOST
+        return self._session.liveliness().declare_token(tokens.in_crowd(text) if is_one_of_many else text)
+
+    def publisher(self, key: str, **options: Any) -> Any:
+        """Declare a publisher, or return what sends by key."""
+        with self._lock:
+            self._publishers += 1
+            is_one_of_many = self._publishers > _MOST
+        if is_one_of_many:
+            return _ByKey(self._session, key, **options)
+        return self._session.declare_publisher(key, **options)
+
+    def subscriber(self, key: str, handler: Handler) -> Any:
+        """Call a handler with what comes by a key."""
+        with self._lock:
+            self._subscribers += 1
+            is_one_of_many = self._subscribers > _MOST
+            if is_one_of_many:
+                self._hearing[key] = (*self._hearing.get(key, ()), handler)
+                if self._shared is None:
+                    self._shared = self._declare(self._everything, self._on_sample)
+        return _Shared(self, key, handler) if is_one_of_many else self._declare(key, handler)
+
+    def _declare(self, key: str, handler: Handler) -> Any:
+        return self._session.declare_subscriber(
+            key, self._gate.callback(handler), allowed_origin=Locality.REMOTE
+        )
+
+    def leave(self, key: str, handler: Handler) -> None:
+        """Call a handler no longer."""
+        with self._lock:
+            left = tuple(each for each in self._hearing.get(key, ()) if each is not handler)
+            if left:
+                self._hearing[key] = left
+            else:
+                self._hearing.pop(key, None)
+
+    def _on_sample(self, sample: zenoh.Sample) -> None:
+        for handler in self._hearing.get(str(sample.key_expr), ()):
+            handler(sample)
+
+
+class _ByKey:
+    """A publisher that is not declared."""
+
+    def __init__(self, session: zenoh.Session, key: str, **options: Any) -> None:
+        self.put = partial(session.put, key, **options)
+
+    def undeclare(self) -> None:
+        """Do nothing."""
+
+
+class _Shared:
+    """A subscription that shares a subscriber."""
+
+    def __init__(self, crowds: Crowds, key: str, handler: Handler) -> None:
+        self.undeclare = partial(crowds.leave, key, handler)
