@@ -1,16 +1,19 @@
-"""The publishers, subscribers and tokens of sessions that have very many.
+"""The publishers, subscribers and tokens of private sessions that have very many.
 
 Zenoh compares each one that is declared with all that are there, in each process: 4,000 topics took a process
-8 to 15 s. Beyond the first ones, subscriptions share one subscriber to all topics of the domain, and
-publishers send by key. Such a process gets messages that nobody in it wants, and publishers there do not
-notice who listens without being announced. Tokens of private sessions get keys that have less in common.
+8 to 15 s. Beyond the first ones, subscriptions share one subscriber to all topics of the domain, publishers
+send by key, and tokens get keys that have less in common. Such a process gets messages that nobody in it
+wants, and publishers there do not notice who listens without being announced. Sessions that are not private
+go by rmw_zenoh's conventions in everything: routers, their access control and other implementations know no
+others.
 """
 
 from __future__ import annotations
 
 import _thread
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import count
 from typing import TYPE_CHECKING, Any, Final
 
 import zenoh
@@ -21,7 +24,7 @@ from rmw_local.transports.zenoh import tokens
 if TYPE_CHECKING:
     from rmw_local.transports.zenoh.presence import Gate
 
-_MOST: Final = 500
+_MOST: Final = 250
 """The number of publishers, of subscriptions and of tokens that are declared as everywhere."""
 
 Handler = Callable[[zenoh.Sample], object]
@@ -35,37 +38,34 @@ class Crowds:
         self._is_private = is_private
         self._gate = gate
         self._everything = f"{domain}/**"
-        self._publishers = self._subscribers = self._tokens = 0
+        self._publishers, self._subscribers, self._tokens = count(1), count(1), count(1)
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
         self._hearing: dict[str, tuple[Handler, ...]] = {}  # by key; what shares a subscriber
         self._shared: object = None
 
     def token(self, text: str) -> zenoh.LivelinessToken:
-        """Declare a token, with its own key or another one: rmw_zenoh, which knows no other, is not there."""
-        with self._lock:
-            self._tokens += 1
-            is_one_of_many = self._is_private and self._tokens > _MOST
+        """Declare a token, with its own key or another one."""
+        is_one_of_many = self._is_one_of_many(self._tokens)
         return self._session.liveliness().declare_token(tokens.in_crowd(text) if is_one_of_many else text)
 
     def publisher(self, key: str, **options: Any) -> Any:
         """Declare a publisher, or return what sends by key."""
-        with self._lock:
-            self._publishers += 1
-            is_one_of_many = self._publishers > _MOST
-        if is_one_of_many:
+        if self._is_one_of_many(self._publishers):
             return _ByKey(self._session, key, **options)
         return self._session.declare_publisher(key, **options)
 
     def subscriber(self, key: str, handler: Handler) -> Any:
         """Call a handler with what comes by a key."""
+        if not self._is_one_of_many(self._subscribers):
+            return self._declare(key, handler)
         with self._lock:
-            self._subscribers += 1
-            is_one_of_many = self._subscribers > _MOST
-            if is_one_of_many:
-                self._hearing[key] = (*self._hearing.get(key, ()), handler)
-                if self._shared is None:
-                    self._shared = self._declare(self._everything, self._on_sample)
-        return _Shared(self, key, handler) if is_one_of_many else self._declare(key, handler)
+            self._hearing[key] = (*self._hearing.get(key, ()), handler)
+            if self._shared is None:
+                self._shared = self._declare(self._everything, self._on_sample)
+        return _Shared(self, key, handler)
+
+    def _is_one_of_many(self, numbers: Iterator[int]) -> bool:
+        return self._is_private and next(numbers) > _MOST
 
     def _declare(self, key: str, handler: Handler) -> Any:
         return self._session.declare_subscriber(
@@ -90,6 +90,7 @@ class _ByKey:
     """A publisher that is not declared."""
 
     def __init__(self, session: zenoh.Session, key: str, **options: Any) -> None:
+        del options["reliability"]  # Unix sockets are reliable
         self.put = partial(session.put, key, **options)
 
     def undeclare(self) -> None:

@@ -20,6 +20,7 @@ from rmw_local.transports.zenoh.keys import NO_HASH, dds_type, hash_of, ros_type
 
 _PREFIX: Final = "@ros2_lv"
 _CROWD: Final = "@ifgen_lv"
+_BRANCHES: Final = 64
 _STANDS_IN: Final = "ifgen_adapts"
 _REFUSES: Final = "ifgen_refuses"
 _LONGEST: Final = 2048  # characters; names of ROS have at most 255
@@ -45,7 +46,7 @@ def in_crowd(token: str) -> str:
     """The key of a token among very many: Zenoh compares what has the same parts before it."""
     _, domain, rest = token.split("/", 2)
     gid = gid_of(token)
-    return f"{_CROWD}/{domain}/{gid[0]}/{gid[1]}/{rest}"
+    return f"{_CROWD}/{domain}/{gid[0] % _BRANCHES}/{gid[1] % _BRANCHES}/{rest}"
 
 
 def of_key(key: str) -> str:
