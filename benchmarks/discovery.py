@@ -4,9 +4,10 @@ python benchmarks/discovery.py [--against CHECKOUT] [--rounds N] [--topics N ...
 
 Each round is a process of its own; checkouts take turns. CPU time in microseconds of one endpoint (1,000, in
 pairs on 500 topics), of one message and of one request with its response, medians over the rounds. Pairs with
-other definitions are measured here only: `warn` looks for bytes that are left over, `adapt` converts. Then one
-process has publishers on many topics and another one subscriptions: the CPU time of each, and the wall time until
-all have met.
+other definitions are measured here only: `warn` looks for bytes that are left over, `adapt` converts.
+
+Before that, one process has publishers on many topics and another one subscriptions: the CPU time of each, and
+the wall time until all have met. Without rounds, that is all.
 """
 
 from __future__ import annotations

@@ -5,8 +5,11 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import struct
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -14,10 +17,12 @@ import pytest
 from tests.running.sites import Site
 from tests.running.terminals import Terminal
 
-pytest.importorskip("zenoh")
+zenoh = pytest.importorskip("zenoh")
 
 PAGE = Path(__file__).parents[2] / "docs/processes.md"
-CAMERA, NOTICES = (str(Path(__file__).parent / "peers" / name) for name in ("camera.py", "notices.py"))
+CAMERA, NOTICES, KEEPER = (
+    str(Path(__file__).parent / "peers" / name) for name in ("camera.py", "notices.py", "keeping.py")
+)
 
 
 @pytest.fixture(scope="module")
@@ -105,10 +110,8 @@ def test_notices_of_shared_memory_do_not_pass_by_access_control(
     site.program(CAMERA, "show", "400000", "0.05", "100000", "1", at=near)
     watcher.until("number")
     robot.until("nodes camera robot watcher")
-    override = dict(pair.split("=") for pair in _override(ours, ours).split(";") if "=" in pair)
-    settings = {path.strip(): json.loads(value) for path, value in override.items()}
-    settings |= {"mode": "client", "connect/endpoints": [far]}
-    words = (site.environment["ROS_DOMAIN_ID"], json.dumps(settings), "robot", "camera")
+    settings = json.dumps(_settings(ours, far))
+    words = (site.environment["ROS_DOMAIN_ID"], settings, "robot", "camera")
     laptop = subprocess.Popen(
         [sys.executable, NOTICES, *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
     )
@@ -120,6 +123,46 @@ def test_notices_of_shared_memory_do_not_pass_by_access_control(
         laptop.kill()
     assert "heard 0" not in robot.so_far()
     watcher.until("number")
+
+
+@pytest.mark.slow
+def test_answers_about_earlier_messages_do_not_pass_by_access_control(
+    site: Site, endpoints: list[str], authorities: dict[str, Path]
+) -> None:
+    """A transient local subscription asks everybody for them."""
+    near, far = endpoints[0], endpoints[1].replace("tcp", "tls")
+    ours = authorities["ours"]
+    (rules,) = _blocks("Access control", "json5")
+    site.router("--config", _router_file(site.folder, near, far, ours, rules))
+    config = zenoh.Config()
+    for path, value in _settings(ours, far).items():
+        config.insert_json5(path, json.dumps(value))
+    was_asked = threading.Event()
+
+    def answer(query: zenoh.Query) -> None:
+        key, _, rest = str(query.key_expr).partition("/@adv")
+        if rest and "/cmd_vel/" in key:
+            text = b"laptop:1\0"
+            data = b"\0\1\0\0" + len(text).to_bytes(4, "little") + text
+            attachment = struct.pack("<qqB16s", 1, time.time_ns(), 16, bytes(16))
+            query.reply(key, data, attachment=attachment, timestamp=laptop.new_timestamp())
+            was_asked.set()
+
+    with zenoh.open(config) as laptop:
+        laptop.declare_queryable("*/cmd_vel/*/*/@adv/**", zenoh.handlers.Callback(answer, indirect=False))
+        remapping = ("--ros-args", "-r", "state:=cmd_vel")
+        robot = site.program(KEEPER, "robot", *remapping, at=near)
+        assert was_asked.wait(30)
+        site.program(KEEPER, "command", *remapping, at=near)
+        robot.until("state command")
+        assert not any(line.startswith("state laptop") for line in robot.so_far())
+
+
+def _settings(authority: Path, router: str) -> dict[str, object]:
+    """Those of a session of Zenoh with the laptop's certificate, which is not ours."""
+    override = dict(pair.split("=") for pair in _override(authority, authority).split(";") if "=" in pair)
+    settings: dict[str, object] = {path.strip(): json.loads(value) for path, value in override.items()}
+    return settings | {"mode": "client", "connect/endpoints": [router]}
 
 
 def _router_file(folder: Path, near: str, far: str, authority: Path, more: str = "{}") -> str:
