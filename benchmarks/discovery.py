@@ -6,8 +6,8 @@ Each round is a process of its own; checkouts take turns. CPU time in microsecon
 pairs on 500 topics), of one message and of one request with its response, medians over the rounds. Pairs with
 other definitions are measured here only: `warn` looks for bytes that are left over, `adapt` converts.
 
-Before that, one process has publishers on many topics and another one subscriptions: the CPU time of each, and
-the wall time until all have met. Without rounds, that is all.
+Before that, one process has publishers on many topics and another one subscriptions: the CPU time of each,
+and the wall time until all have met. Without rounds, that is all.
 """
 
 from __future__ import annotations

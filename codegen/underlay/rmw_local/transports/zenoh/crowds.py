@@ -31,7 +31,7 @@ Handler = Callable[[zenoh.Sample], object]
 
 
 class Crowds:
-    """What one session publishes and subscribes to."""
+    """The endpoints of one session, and their tokens."""
 
     def __init__(self, session: zenoh.Session, gate: Gate, domain: int, *, is_private: bool) -> None:
         self._session = session

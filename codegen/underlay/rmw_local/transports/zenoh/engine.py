@@ -82,7 +82,7 @@ class ZenohTransport:
         self._gate = Gate()
         self._background = Background()
         self._domain = domain
-        self._patterns = tokens.pattern(domain), tokens.crowd_pattern(domain)
+        self._patterns = tokens.pattern(domain), *tokens.crowd_patterns(domain)
         self._configuration = configuration
         self._is_private = is_private
         self._questions: list[Questions] = []

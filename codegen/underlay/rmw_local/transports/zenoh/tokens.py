@@ -20,7 +20,7 @@ from rmw_local.transports.zenoh.keys import NO_HASH, dds_type, hash_of, ros_type
 
 _PREFIX: Final = "@ros2_lv"
 _CROWD: Final = "@ifgen_lv"
-_BRANCHES: Final = 64
+_BRANCHES, _TWIGS = 8, 64
 _STANDS_IN: Final = "ifgen_adapts"
 _REFUSES: Final = "ifgen_refuses"
 _LONGEST: Final = 2048  # characters; names of ROS have at most 255
@@ -37,16 +37,19 @@ def pattern(domain: int) -> str:
     return f"{_PREFIX}/{domain}/**"
 
 
-def crowd_pattern(domain: int) -> str:
-    """The key expression of those tokens of a domain that are declared below other keys."""
-    return f"{_CROWD}/{domain}/**"
+def crowd_patterns(domain: int) -> list[str]:
+    """The key expressions of those tokens of a domain that are declared below other keys.
+
+    They are several, since Zenoh looks through all that matches one whenever there is more of it.
+    """
+    return [f"{_CROWD}/{domain}/{branch}/**" for branch in range(_BRANCHES)]
 
 
 def in_crowd(token: str) -> str:
     """The key of a token among very many: Zenoh compares what has the same parts before it."""
     _, domain, rest = token.split("/", 2)
     gid = gid_of(token)
-    return f"{_CROWD}/{domain}/{gid[0] % _BRANCHES}/{gid[1] % _BRANCHES}/{rest}"
+    return f"{_CROWD}/{domain}/{gid[0] % _BRANCHES}/{gid[1] % _TWIGS}/{rest}"
 
 
 def of_key(key: str) -> str:
