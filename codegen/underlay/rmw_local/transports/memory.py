@@ -82,9 +82,11 @@ class Pool:
     """
 
     def __init__(self, name: str, size: int) -> None:
-        self._name = name
+        self._folder = SHARED / own_name()
+        self._path = str(self._folder / name)  # a Path would take 10 us of each message
         self._size = self._limit = size
         self._file = -1
+        self._status: os.stat_result | None = None  # of the file, when it was made
         self._is_closed = self._has_said = False
         self._memory: mmap.mmap | None = None  # of the whole file, once there is something in it
         self._lent: list[_Lent] = []  # by offset
@@ -94,10 +96,6 @@ class Pool:
             for each in self._folder.iterdir():
                 self.bury(each.name)
         self.keep()
-
-    @property
-    def _folder(self) -> Path:
-        return SHARED / own_name()
 
     def is_near(self, name: str) -> bool:
         """Whether a session can read this file."""
@@ -145,7 +143,7 @@ class Pool:
             self._is_closed = True
             if self._is_there():
                 with suppress(OSError):
-                    (self._folder / self._name).unlink()
+                    Path(self._path).unlink()
             self._let_go()
 
     def forget(self) -> None:
@@ -155,6 +153,7 @@ class Pool:
 
     def _let_go(self) -> None:
         self._lent.clear()
+        self._status = None
         memory, self._memory = self._memory, None
         file, self._file = self._file, -1
         if memory is not None:
@@ -167,7 +166,7 @@ class Pool:
         if self._is_closed or self._is_there():
             return not self._is_closed
         try:
-            path = own_folder(SHARED) / self._name
+            path = own_folder(SHARED) / Path(self._path).name
             if _is_at(path, self._file):
                 path.unlink()  # somebody has cut it
             file = _locked_file(path)
@@ -175,13 +174,19 @@ class Pool:
             self._say_why_not(error)
             return False
         self._let_go()  # of the old one: those who have opened it keep what they were lent
-        self._file, self._limit = file, self._size
+        self._file, self._limit, self._status = file, self._size, os.fstat(file)
         return True
 
     def _is_there(self) -> bool:
         """Whether others can open the file, and it is as long as it was: to use more would be fatal."""
+        if self._status is None:
+            return False
+        try:
+            found = os.lstat(self._path)
+        except OSError:
+            return False
         length = 0 if self._memory is None else len(self._memory)
-        return _is_at(self._folder / self._name, self._file) and os.fstat(self._file).st_size >= length
+        return os.path.samestat(found, self._status) and found.st_size >= length
 
     def _is_awaited(self) -> bool:
         with self._lock:

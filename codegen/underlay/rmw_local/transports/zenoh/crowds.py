@@ -25,7 +25,10 @@ if TYPE_CHECKING:
     from rmw_local.transports.zenoh.presence import Gate
 
 _MOST: Final = 250
-"""The number of publishers, of subscriptions and of tokens that are declared as everywhere."""
+"""The number of publishers, of subscriptions and of tokens that are declared as everywhere.
+
+Of publishers and tokens, it counts those that are gone, too.
+"""
 
 Handler = Callable[[zenoh.Sample], object]
 
@@ -38,7 +41,8 @@ class Crowds:
         self._is_private = is_private
         self._gate = gate
         self._everything = f"{domain}/**"
-        self._publishers, self._subscribers, self._tokens = count(1), count(1), count(1)
+        self._publishers, self._tokens = count(1), count(1)
+        self._subscribers = 0  # those that are there, with keys of their own
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
         self._hearing: dict[str, tuple[Handler, ...]] = {}  # by key; what shares a subscriber
         self._shared: object = None
@@ -56,9 +60,10 @@ class Crowds:
 
     def subscriber(self, key: str, handler: Handler) -> Any:
         """Call a handler with what comes by a key."""
-        if not self._is_one_of_many(self._subscribers):
-            return self._declare(key, handler)
         with self._lock:
+            if not self._is_private or self._subscribers < _MOST:
+                self._subscribers += 1
+                return _Own(self, self._declare(key, handler))
             self._hearing[key] = (*self._hearing.get(key, ()), handler)
             if self._shared is None:
                 self._shared = self._declare(self._everything, self._on_sample)
@@ -72,7 +77,12 @@ class Crowds:
             key, self._gate.callback(handler), allowed_origin=Locality.REMOTE
         )
 
-    def leave(self, key: str, handler: Handler) -> None:
+    def leave(self) -> None:
+        """Have one subscriber less."""
+        with self._lock:
+            self._subscribers -= 1
+
+    def leave_others(self, key: str, handler: Handler) -> None:
         """Call a handler no longer."""
         with self._lock:
             left = tuple(each for each in self._hearing.get(key, ()) if each is not handler)
@@ -97,8 +107,20 @@ class _ByKey:
         """Do nothing."""
 
 
+class _Own:
+    """A subscription with a subscriber of its own."""
+
+    def __init__(self, crowds: Crowds, subscriber: Any) -> None:
+        self._crowds, self._subscriber = crowds, subscriber
+
+    def undeclare(self) -> None:
+        """Undeclare it; raises RuntimeError if that has to be tried again."""
+        self._subscriber.undeclare()
+        self._crowds.leave()
+
+
 class _Shared:
     """A subscription that shares a subscriber."""
 
     def __init__(self, crowds: Crowds, key: str, handler: Handler) -> None:
-        self.undeclare = partial(crowds.leave, key, handler)
+        self.undeclare = partial(crowds.leave_others, key, handler)
