@@ -24,7 +24,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(abspath $(VENV))/pycache
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-kilted fuzz lint bench dist clean
+.PHONY: help demo test test-slow test-kilted interop fuzz lint bench dist clean
 
 help:  ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -49,6 +49,9 @@ test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in its own environ
 	@$(MAKE) --no-print-directory VENV=$(VENV)-kilted REFERENCE=reference-kilted $(VENV)-kilted/.test
 	$(VENV)-kilted/bin/pytest -n auto -m "not alone" tests/native
 	$(VENV)-kilted/bin/pytest -n auto --transport rclpy generated
+
+interop: $(VENV)/.test  ## meet other implementations of rmw_zenoh's conventions and of DDS (INSTALL=1 first, about 1 GB)
+	$(BIN)/python -m tests.interop.bench $(if $(INSTALL),--install) $(OPTIONS)
 
 fuzz: $(VENV)/.test  ## compare the codecs on mutated input (CASES=10000000, SANITIZE=1)
 	$(BIN)/python -m tests.codec.fuzzing --cases $(CASES) $(if $(SANITIZE),--sanitize)
