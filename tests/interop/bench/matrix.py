@@ -126,7 +126,7 @@ class Matrix:
         return self._program("our node", words, "ours", ROS_STATIC_PEERS="" if peer.on_dds else address)
 
     def _theirs(self, peer: Peer) -> Actor:
-        node = peer.name.lower().replace("-", "_")
+        node = re.sub(r"\W", "_", peer.name.lower())
         if not peer.bridge:
             return self._peer(peer.name, peer.program, node)
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 from dataclasses import dataclass
 from importlib import import_module
 from types import new_class
@@ -14,6 +15,15 @@ else:
     from conversation import Receiver, Value, converse, plain, unpacked, wait_for
 
 _TO_BLOCK = 1.0  # [s] for a reliable writer
+_ON_THIS_MACHINE = """
+<CycloneDDS><Domain><General>
+  <Interfaces><NetworkInterface name="lo"/></Interfaces><AllowMulticast>false</AllowMulticast>
+</General><Discovery>
+  <ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
+  <Peers><Peer address="127.0.0.1"/></Peers>
+</Discovery></Domain></CycloneDDS>
+"""
+"""How ROS configures it where ROS_AUTOMATIC_DISCOVERY_RANGE is LOCALHOST."""
 
 
 class CycloneProgram(Receiver):
@@ -23,6 +33,7 @@ class CycloneProgram(Receiver):
 
     def __init__(self, setting: dict[str, Any]) -> None:
         super().__init__()
+        os.environ["CYCLONEDDS_URI"] = _ON_THIS_MACHINE
         self._classes = _classes()
         self._domain: Any = import_module("cyclonedds.domain")
         self._participant = self._domain.DomainParticipant(setting["domain"])
@@ -81,6 +92,14 @@ def _profile(qos: Value) -> Any:
         else policy.Reliability.BestEffort,
         policy.Durability.TransientLocal if qos["transient_local"] else policy.Durability.Volatile,
         policy.History.KeepLast(qos["depth"]),
+        # What it keeps for those who come late; without it, that is one.
+        policy.DurabilityService(
+            cleanup_delay=0,
+            history=policy.History.KeepLast(qos["depth"]),
+            max_samples=-1,
+            max_instances=-1,
+            max_samples_per_instance=-1,
+        ),
     )
 
 
