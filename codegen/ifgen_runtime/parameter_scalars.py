@@ -1,4 +1,4 @@
-"""Values of parameters as rcl_yaml_param_parser reads them, without a YAML parser: its import costs milliseconds."""
+"""Values of parameters as rcl_yaml_param_parser reads them. This needs no YAML parser, whose import takes long."""
 
 from __future__ import annotations
 

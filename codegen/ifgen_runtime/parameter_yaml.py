@@ -30,8 +30,9 @@ __all__ = [
 
 PARAMETERS_KEY: Final = "ros__parameters"
 ONLY_LOAD: Final = "#ifgen: "
-"""Begins a line of a parameter file that rcl cannot take, so that it is a comment except for `ifgen param load`."""
+"""Begins a line that rcl cannot take: a comment for nodes, a parameter for `ifgen param load`."""
 
+_WHY_ONLY_LOAD: Final = "# Nodes cannot read bytes and empty arrays from a file. `ifgen param load` can:"
 _MAX_SIZE: Final = 64 * 2**20  # [bytes]; a device has no end
 _MAX_DEPTH: Final = 1000  # as libyaml has it; PyYAML's own parser has no limit
 _STR: Final = "tag:yaml.org,2002:str"
@@ -102,7 +103,7 @@ def read_file(path: str, entry: Callable[[str], Entry], *, everything: bool = Fa
         with Path(path).open("rb") as file:  # or a pipe, as of bash's `<(...)`
             data = file.read(_MAX_SIZE + 1)
     except OSError as error:
-        raise ParameterYamlError("Error opening YAML file", error.strerror or "it cannot be read") from None
+        raise ParameterYamlError("Error opening YAML file", f"it cannot be read: {error.strerror}") from None
     if len(data) > _MAX_SIZE:
         raise ParameterYamlError(f"YAML file is larger than {_MAX_SIZE // 2**20} MiB")
     if everything:
@@ -113,16 +114,16 @@ def read_file(path: str, entry: Callable[[str], Entry], *, everything: bool = Fa
 
 
 def value_text(value: Value | bytes) -> str:
-    """A value as `-p name:=...` and `ifgen param set` take it. Bytes become numbers, which only the latter takes."""
+    """A value as `-p name:=...` and `ifgen param set` take it; bytes as numbers, which only `set` takes."""
     plain = list(value) if isinstance(value, bytes) else value
     text: str = yaml.dump(plain, Dumper=_Dumper, default_flow_style=True, width=sys.maxsize)
     return text.removesuffix("\n").removesuffix("\n...")
 
 
 def file_text(node: str, parameters: Mapping[str, Value | bytes]) -> str:
-    """A file with the parameters of a node, which rcl reads as they are, except for bytes and empty arrays."""
+    """A file with the parameters of a node. rcl reads all except bytes and empty arrays."""
     held = {name: value for name, value in parameters.items() if not is_beyond_files(value)}
-    document = {node: {PARAMETERS_KEY: _nested(held)}}
+    document = {node: {PARAMETERS_KEY: nested(held)}}
     text: str = yaml.dump(document, Dumper=_Dumper, default_flow_style=False, width=sys.maxsize)
     beyond = {name: value for name, value in parameters.items() if name not in held}
     if not beyond:
@@ -130,8 +131,7 @@ def file_text(node: str, parameters: Mapping[str, Value | bytes]) -> str:
     lines = [f"    {ONLY_LOAD}{value_text(name)}: {value_text(value)}" for name, value in beyond.items()]
     if not held:
         text = "".join(f"{ONLY_LOAD}{line}\n" for line in (f"{value_text(node)}:", f"  {PARAMETERS_KEY}:"))
-    reason = "# Parameter files cannot hold bytes and empty arrays. `ifgen param load` reads these lines, nodes do not:"
-    return "\n".join([text.rstrip("\n"), f"    {reason}", *lines, ""])
+    return "\n".join([text.rstrip("\n"), f"    {_WHY_ONLY_LOAD}", *lines, ""])
 
 
 def is_beyond_files(value: Value | bytes) -> bool:
@@ -139,8 +139,8 @@ def is_beyond_files(value: Value | bytes) -> bool:
     return isinstance(value, bytes) or value is None or (isinstance(value, list) and not value)
 
 
-def _nested(parameters: Mapping[str, Value | bytes]) -> dict[str, Any]:
-    """Parameters as maps within each other, except for those whose names do not allow that."""
+def nested(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters as maps within each other, except for those whose names rule that out, such as `a..b`."""
     tree: dict[str, Any] = {}
     for name, value in parameters.items():
         parts = name.split(".")
@@ -156,7 +156,7 @@ def _nested(parameters: Mapping[str, Value | bytes]) -> dict[str, Any]:
 
 
 class _Dumper(yaml.SafeDumper):
-    """Puts in quotes what rcl or PyYAML takes for something else than text, such as `y`, `1e5` and `12:30:45`."""
+    """Puts texts in quotes that rcl or PyYAML takes for something else, such as `y`, `1e5` and `12:30:45`."""
 
     def ignore_aliases(self, data: Any) -> bool:
         """Write everything where it is used: rcl reads no aliases."""
@@ -240,7 +240,7 @@ class _Values:
             raise ParameterYamlError(
                 f"Sequence should be of same type. Value type '{_TYPE_NAMES[type(value)]}' do not belong "
                 f"at line_num {_line(event)}",
-                f"line {_line(event)}: the elements of a list have one type, and {event.value!r} has another one",
+                f"line {_line(event)}: the elements of a list have one type, but {event.value!r} has another",
             )
 
 

@@ -15,14 +15,82 @@ from ifgen_runtime import parameter_yaml
 from ifgen_runtime.parameter_scalars import ParameterVariant
 from ifgen_runtime.parameter_yaml import ParameterYamlError
 
-AWKWARD = (
-    "1e5 nan .nan inf -.Inf y n Yes OFF null ~ true 2026-01-31 12:30:45 0x1F 0b1 010 007 1_000 -0 +1 .5 5. 1.e3 0x1p3 = << "
-    "- ? : # * & ! | > % @ ` {} [] {a:1} [1] a:b <<: !!str --- ... '' \"\" ' \" \\ nan(x) infinity +.inf"
-).split(" ")
-TEXTS = (
-    st.sampled_from([*AWKWARD, "", " ", "a: b", "a #b", "\n", "a\nb", " a\n  b\n", "\t", "a\r\n", "é", "\u2028", "\x85", "\x7f"])
-    | st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=12)
-)
+AWKWARD = [
+    "1e5",
+    "nan",
+    ".nan",
+    "inf",
+    "-.Inf",
+    "y",
+    "n",
+    "Yes",
+    "OFF",
+    "null",
+    "~",
+    "true",
+    "2026-01-31",
+    "12:30:45",
+    "0x1F",
+    "0b1",
+    "010",
+    "007",
+    "1_000",
+    "-0",
+    "+1",
+    ".5",
+    "5.",
+    "1.e3",
+    "0x1p3",
+    "=",
+    "<<",
+    "-",
+    "?",
+    ":",
+    "#",
+    "*",
+    "&",
+    "!",
+    "|",
+    ">",
+    "%",
+    "@",
+    "`",
+    "{}",
+    "[]",
+    "{a:1}",
+    "[1]",
+    "a:b",
+    "<<:",
+    "!!str",
+    "---",
+    "...",
+    "''",
+    '""',
+    "'",
+    '"',
+    "\\",
+    "nan(x)",
+    "infinity",
+    "+.inf",
+]
+TEXTS = st.sampled_from(
+    [
+        *AWKWARD,
+        "",
+        " ",
+        "a: b",
+        "a #b",
+        "\n",
+        "a\nb",
+        " a\n  b\n",
+        "\t",
+        "a\r\n",
+        "é",
+        "\u2028",
+        "\x85",
+        "\x7f",
+    ]
+) | st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=12)
 SCALARS: dict[type, st.SearchStrategy[Any]] = {
     bool: st.booleans(),
     int: st.integers(-(2**63), 2**63 - 1),

@@ -128,15 +128,27 @@ def _basic(type_: str, value: Any, where: str) -> Any:
 
 
 def _text(value: Any, where: str) -> str:
+    if isinstance(value, str):
+        if problem := text_problem(value):
+            raise ToolError(f"the value of {where!r} does not fit: {problem}")
+        return value
     try:
-        if isinstance(value, str):
-            value.encode()
-            return value
         if isinstance(value, int | float) and not isinstance(value, bool):
             return str(value)  # as ROS does
-    except ValueError:  # half of a character, or more digits than Python writes
+    except ValueError:  # more digits than Python writes
         pass
     raise _wrong(where, "expected text", value, "put it in quotes within the YAML")
+
+
+def text_problem(text: str) -> str:
+    """The reason why no message can hold a text; empty if one can."""
+    if "\0" in text:
+        return "a text cannot hold a NUL: strings of ROS end there"
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        return f"character {error.start} is half of a surrogate pair, or a byte that is no UTF-8"
+    return ""
 
 
 def _float(value: Any, where: str) -> float:
@@ -159,15 +171,17 @@ def _integer(type_: str, value: Any, where: str) -> int:
 
 
 def _wrong(where: str, expected: str, value: Any, help: str = "") -> ToolError:
-    shown = _shown(value)
-    shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
-    return ToolError(
-        f"{f'the value of {where!r}' if where else 'the message'}: {expected}, got {shown}", help
-    )
+    place = f"the value of {where!r}" if where else "the message"
+    return ToolError(f"{place}: {expected}, got {shown(value)}", help)
 
 
-def _shown(value: Any) -> str:
-    """A value as it could be written."""
+def shown(value: Any) -> str:
+    """A value as it could be written, in a few words."""
+    text = _written(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _written(value: Any) -> str:
     try:
         return json.dumps(value)
     except TypeError:  # YAML knows dates, too
