@@ -1,4 +1,4 @@
-"""Values of parameters as rcl_yaml_param_parser reads them. This needs no YAML parser, whose import takes long."""
+"""Values of parameters as rcl_yaml_param_parser reads them, without a YAML parser, which loads slowly."""
 
 from __future__ import annotations
 

@@ -183,7 +183,8 @@ def _events(text: str | bytes, told: Callable[[int], str]) -> Iterator[Any]:
     """The events of a parser, within limits. Raises ParameterYamlError, with rcl's words for the line."""
     line = depth = 0
     try:
-        for event in yaml.parse(text, Loader=_Loader):
+        # libyaml refuses a subclass of str.
+        for event in yaml.parse(str(text) if isinstance(text, str) else text, Loader=_Loader):
             line = _line(event)
             depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
             if depth > _MAX_DEPTH:

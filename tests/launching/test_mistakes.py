@@ -136,11 +136,11 @@ LINES = [
     ),
     (
         "Node(executable='true', parameters=[{'a': LaunchConfiguration('x', default='[1')}])",
-        "the parameter 'a': the text '[1' is not YAML: ParameterValue(..., value_type=str) passes it as it is",
+        "the parameter 'a': the text '[1' is no value of a parameter: it is no YAML: ",
     ),
     (
         "Node(executable='true', parameters=[{'a': ParameterValue('1', value_type=list[int])}])",
-        "the parameter 'a': expected a list, got '1'",
+        "the parameter 'a': the text '1' is no value of a parameter: this is not a list of values",
     ),
     (
         "Node(executable='true', parameters=[ParameterFile('/no/such.yaml', allow_substs=True)])",
