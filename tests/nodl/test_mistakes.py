@@ -130,6 +130,10 @@ ENDPOINTS = [
 
 PARAMETERS = [
     ("invalid-name", parameter("type: int", name="⟦'a..b'⟧"), "between two dots"),
+    ("invalid-name", parameter("type: int", name="gains.⟦__map_joints⟧.p"), "write `map_joints`"),
+    ("invalid-name", parameter("type: int", name="⟦__x⟧"), "private in Python"),
+    ("invalid-name", parameter("type: int", name="a.⟦__class__⟧"), "cannot be an attribute"),
+    ("invalid-name", parameter("type: int", name="a.⟦mro⟧"), "cannot be an attribute"),
     ("invalid-name", parameter("type: int", name="a.⟦frame-id⟧"), "did you mean `a.frame_id`"),
     ("invalid-name", parameter("type: int", name="⟦lambda⟧"), "attribute"),
     ("reserved-parameter", parameter("type: bool", name="⟦use_sim_time⟧"), "rclpy declares"),
@@ -144,6 +148,7 @@ PARAMETERS = [
     ("invalid-parameter-type", parameter("type: ⟦doubel⟧"), "did you mean `double`"),
     ("invalid-parameter-type", parameter("type: ⟦bool_array_fixed_3⟧"), "fixed_size"),
     ("invalid-parameter-type", parameter("type: ⟦string_fixed_0⟧"), "`string_fixed_N`"),
+    ("unknown-key", "nodl_version: 2\nparameters: {pid: {⟦p⟧: {type: double}}}\n", "`pid.p: {type: ...}`"),
     ("wrong-default", parameter("type: int, default_value: ⟦1.5⟧"), "an integer of 64 bits"),
     ("wrong-default", parameter("type: int, default_value: ⟦true⟧"), "boolean true"),
     ("wrong-default", parameter("type: int, default_value: ⟦9223372036854775808⟧"), "64 bits"),

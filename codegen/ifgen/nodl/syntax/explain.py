@@ -212,7 +212,7 @@ def yaml_surprise(node: Node, expected: str) -> str | None:
         return None
     written = _written(node)
     if isinstance(node.value, str):
-        if "number" not in expected and "64 bits" not in expected:  # a float is no parameter of type int
+        if "number" not in expected and "integer" not in expected:
             return None
         if (
             _JSON_NUMBER.fullmatch(written) and "64 bits" not in expected
