@@ -208,7 +208,8 @@ def _line(event: Any) -> int:
 def _scalar(event: yaml.ScalarEvent) -> Scalar:
     quoted = event.style in ("'", '"')
     if not quoted and not event.value:
-        raise ParameterYamlError(f"No value at line {_line(event)}")
+        reason = f"line {_line(event)}: there is no value; YAML needs a space after the colon before one"
+        raise ParameterYamlError(f"No value at line {_line(event)}", reason)
     if quoted or event.tag == _STR:
         return str(event.value)
     return read_scalar(event.value)

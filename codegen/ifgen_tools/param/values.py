@@ -194,6 +194,8 @@ def parameter_of(name: str, value: Value, declared: int) -> Parameter:
             if wrong := [each for each in value if each not in range(256)]:
                 raise ToolError(f"the value {wrong[0]} in {name!r} fits no byte", "bytes are 0 to 255")
             type_, converted = _BYTES, [bytes([each]) for each in value]
+    if problem := text_problem(name):
+        raise ToolError(f"{name!r} can be no name of a parameter: {problem}")
     for text in converted if isinstance(converted, list) else [converted]:
         if isinstance(text, str) and (problem := text_problem(text)):
             raise ToolError(f"the value of {name!r} fits no parameter: {problem}")

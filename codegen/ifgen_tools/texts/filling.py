@@ -6,7 +6,9 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ifgen_runtime import yaml_text
+from ifgen_runtime import serialize, yaml_text
+from ifgen_runtime.errors import CodecError
+from ifgen_runtime.message import Message
 
 from ifgen_tools.errors import ToolError, did_you_mean
 from ifgen_tools.texts.field_types import INTEGERS, FieldType, element_class, field_types, type_name
@@ -38,6 +40,12 @@ def fill(message: Any, values: Any) -> list[SetStamp]:
     """
     stamps: list[SetStamp] = []
     _fill(message, {} if values is None else values, "", stamps)
+    if isinstance(message, Message):  # the setters of a real ROS have checked theirs
+        try:
+            serialize(message)
+        except CodecError as error:
+            where = error.path.partition(".")[2]
+            raise ToolError(f"the value of {where!r} does not fit: {error.problem}") from None
     return stamps
 
 
@@ -45,15 +53,14 @@ def _fill(message: Any, values: Any, path: str, stamps: list[SetStamp]) -> None:
     types = field_types(type(message))
     if not isinstance(values, Mapping):
         example = ", ".join(f"{name}: ..." for name in list(types)[:2])
-        raise _wrong(
-            path, f"expected the fields of {type_name(type(message))}", values, f"write {{{example}}}"
-        )
+        advice = _missing_space(values, types) or f"write {{{example}}}"
+        raise _wrong(path, f"expected the fields of {type_name(type(message))}", values, advice)
     for name, value in values.items():
         if name not in types:
             known = f"its fields are {', '.join(types) or 'none'}"
             raise ToolError(
                 f"{type_name(type(message))} has no field {_join(path, str(name))!r}",
-                did_you_mean(str(name), list(types)) or known,
+                _missing_space(name, types) or did_you_mean(str(name), list(types)) or known,
             )
         where = _join(path, name)
         converted = _converted(message, name, types[name], value, where, stamps)
@@ -61,7 +68,14 @@ def _fill(message: Any, values: Any, path: str, stamps: list[SetStamp]) -> None:
             try:
                 setattr(message, types[name].attribute, converted)
             except (AssertionError, TypeError, ValueError, OverflowError) as error:
-                raise ToolError(f"the value of {where!r} does not fit: {error}") from None
+                reason = " ".join(str(error).split())
+                raise ToolError(f"the value of {where!r} does not fit: {reason}") from None
+
+
+def _missing_space(text: Any, types: Mapping[str, FieldType]) -> str:
+    """Advice for `x:0`, which YAML takes for a text or a name; empty for everything else."""
+    name, colon, value = str(text).partition(":")
+    return f"write a space after the colon: {{{name}: {value or '...'}}}" if colon and name in types else ""
 
 
 _KEPT = object()
