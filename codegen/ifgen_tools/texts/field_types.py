@@ -50,7 +50,8 @@ def field_types(cls: type[Any]) -> dict[str, FieldType]:
     if found is None:
         renamed: dict[str, str] = getattr(cls, "__renamed__", {})
         spelled: dict[str, str] = cls.get_fields_and_field_types()
-        found = {name: _read(text, renamed.get(name, name)) for name, text in spelled.items()}
+        folder = cls.__module__.split(".")[1]
+        found = {name: _read(text, renamed.get(name, name), folder) for name, text in spelled.items()}
         _known[cls] = found
     return found
 
@@ -84,16 +85,23 @@ def element_class(message: Any, name: str) -> type[Any]:
     return own
 
 
-def _read(text: str, attribute: str) -> FieldType:
+def _read(text: str, attribute: str, folder: str) -> FieldType:
     if match := _ARRAY.fullmatch(text):
-        return FieldType(_element(match["element"]), attribute, is_array=True, size=int(match["size"]))
+        return FieldType(
+            _element(match["element"], folder), attribute, is_array=True, size=int(match["size"])
+        )
     if match := _SEQUENCE.fullmatch(text):
         size = int(match["size"]) if match["size"] else None
-        return FieldType(_element(match["element"]), attribute, is_sequence=True, size=size)
-    return FieldType(_element(text), attribute)
+        return FieldType(_element(match["element"], folder), attribute, is_sequence=True, size=size)
+    return FieldType(_element(text, folder), attribute)
 
 
-def _element(text: str) -> str:
-    """The type without the bound of a string, and a message with its `msg`."""
+def _element(text: str, folder: str) -> str:
+    """The type without the bound of a string, and a message with its folder.
+
+    That is `msg`, or for a part of a service or an action, such as `Add_Request`, that of its neighbours.
+    """
     package, slash, short = _BOUND.sub("", text).partition("/")
-    return f"{package}/msg/{short}" if slash and "/" not in short else f"{package}{slash}{short}"
+    if not slash or "/" in short:
+        return f"{package}{slash}{short}"
+    return f"{package}/{folder if '_' in short else 'msg'}/{short}"

@@ -219,6 +219,7 @@ def test_files_that_are_wrong(param: Run, tmp_path: Path, text: str | None, told
     [
         (["get", "/robot/arn", "speed"], "there is no node '/robot/arn' = help: did you mean '/robot/arm'?"),
         (["list", "/x"], "there is no node '/x' = help: see `ifgen node list`"),
+        (["get", "/robot/arn", "speed", "--timeout", "0"], "there is no node '/robot/arn'"),
         (["get", ARM, "sped"], "has no parameter 'sped' = help: did you mean 'speed'?"),
         (["get", ARM, "zzz"], "has no parameter 'zzz' = help: see `ifgen param list /robot/arm`"),
         (["get", ARM, "unset"], "the parameter 'unset' of '/robot/arm' has no value = help: it is declared"),
