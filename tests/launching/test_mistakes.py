@@ -7,7 +7,9 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
+import click
 import pytest
+from ifgen_tools.launching import commands
 from ifgen_tools.launching.errors import LaunchError
 from ifgen_tools.launching.reading import read
 from launch import LaunchContext, LaunchDescriptionEntity
@@ -196,6 +198,35 @@ def test_outside_of_a_launch() -> None:
         ThisLaunchFile().perform(LaunchContext())
     with pytest.raises(RuntimeError, match="a node has its name when it is executed, not before"):
         _ = Node(executable="a").node_name
+
+
+@pytest.mark.parametrize("words", [["f.launch.py", "rate=0.1"], ["p", "f.launch.py", "rate=0.1", "a:=b"]])
+def test_an_argument_without_a_colon(words: list[str]) -> None:
+    with pytest.raises(click.UsageError, match=r"'rate=0\.1' sets no argument: write rate:=0\.1"):
+        commands._split(words)
+
+
+@pytest.mark.parametrize(
+    ("name", "remark"),
+    [
+        ("rte", "has no argument 'rte': did you mean 'rate'?"),
+        ("zzz", "has no argument 'zzz': it has rate"),
+        ("rate", ""),
+        ("late", ""),
+        ("transport", ""),
+    ],
+)
+def test_an_argument_that_nobody_declares(name: str, remark: str, record: Recorded, tmp_path: Path) -> None:
+    """One that the file mentions may be read by its functions."""
+    recorder = record(
+        "a.launch.py",
+        described(
+            "DeclareLaunchArgument('rate', default_value='1'), say(LaunchConfiguration('late', default=''))"
+        ),
+    )
+    path = str(tmp_path / "a.launch.py")
+    found = commands._unknown(name, recorder.read(path), path, recorder)
+    assert found == (f"{path} {remark}" if remark else "")
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ it in that order, so a later pattern wins over an earlier one however specific t
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final
 
 from ifgen_runtime.parameter_scalars import ParameterVariant, Value, read_scalar
@@ -28,6 +28,9 @@ class ParameterOverrides:
 
     def __init__(self) -> None:
         self._entries: dict[str, Entry] = {}
+        self._by_hand: set[tuple[str, str]] = set()  # pattern and name of each `-p`
+        self._used: dict[str, set[str]] = {}  # the names that nodes have declared, by pattern
+        self._nodes: set[str] = set()
 
     def __bool__(self) -> bool:
         return bool(self._entries)
@@ -44,6 +47,37 @@ class ParameterOverrides:
             if _matches(pattern, full_name):
                 for name, variant in entry.items():
                     yield name, variant.value()
+
+    def override(self, pattern: str, name: str) -> ParameterVariant:
+        """The parameter that `-p` names, created when missing. Raises RuleError for a bad pattern."""
+        self._by_hand.add((pattern, name))
+        return self.entry(pattern).setdefault(name, ParameterVariant())
+
+    def use(self, full_name: str, names: Iterable[str] | None) -> None:
+        """Note that a node is there, and has declared parameters; None stands for all of them."""
+        self._nodes.add(full_name)
+        for pattern, entry in self._entries.items():
+            if _matches(pattern, full_name):
+                self._used.setdefault(pattern, set()).update(entry if names is None else names)
+
+    def unused(self) -> Iterator[str]:
+        """A sentence for each override that no node took, if it was given for one node or with `-p`.
+
+        A file for several nodes is as it should be if one of them is here.
+        """
+        from difflib import get_close_matches  # only the end of a program needs it
+
+        exact = [pattern for pattern in self._entries if "*" not in pattern]
+        if self._nodes and exact and not any(pattern in self._used for pattern in exact):
+            nodes = ", ".join(sorted(self._nodes))
+            yield f"Parameters for {', '.join(exact)} were given, but there was no such node: only {nodes}"
+        for pattern, used in self._used.items():
+            for name in self._entries[pattern]:
+                is_meant = pattern in exact or (pattern, name) in self._by_hand
+                if is_meant and name not in used:
+                    near = get_close_matches(name, used, n=1, cutoff=0.5)
+                    advice = f": did you mean '{near[0]}'?" if near else ""
+                    yield f"The parameter '{name}' was given, but no node declared it{advice}"
 
 
 def _check_pattern(pattern: str) -> None:
@@ -81,15 +115,15 @@ def parse_override_rule(rule: str, overrides: ParameterOverrides) -> None:
     text = lexer.rest()
     if not text:
         raise RuleError("error not set")  # the C layer says no more than this
-    entry = overrides.entry("/**" if node is None else node)
+    variant = overrides.override("/**" if node is None else node, name)
     # Most values are a plain word or number: they need no YAML parser, whose import costs milliseconds.
     if re.fullmatch(r"[\w.+/]+", text, re.ASCII):
-        entry.setdefault(name, ParameterVariant()).set_scalar(read_scalar(text))
+        variant.set_scalar(read_scalar(text))
         return
     from ifgen_runtime import parameter_yaml  # with a YAML parser
 
     try:
-        parameter_yaml.read_value(text, entry.setdefault(name, ParameterVariant()))
+        parameter_yaml.read_value(text, variant)
     except parameter_yaml.ParameterYamlError as error:
         raise RuleError(str(error)) from None
 
