@@ -116,7 +116,7 @@ def typed(value: Any, wanted: Any) -> Any:
 
 
 def _read(text: str, reader: Callable[[str], Any]) -> Any:
-    """What nodes read in a text. Raises TypeError."""
+    """Read a text as nodes do. Raises TypeError."""
     try:
         return reader(text)
     except parameter_yaml.ParameterYamlError as error:
@@ -131,7 +131,7 @@ def _value(text: str) -> Any:
 
 
 def _element(value: Any, read: Any, wanted: type) -> Any:
-    """What was read in a value, in the type that is wanted. Raises TypeError."""
+    """Return what was read in a value, in the type that is wanted. Raises TypeError."""
     if wanted is str:
         return str(value)
     if wanted is float and isinstance(read, int) and not isinstance(read, bool):
