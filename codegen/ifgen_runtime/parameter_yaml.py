@@ -166,12 +166,13 @@ class _Dumper(yaml.SafeDumper):
         """Write a text on one line."""
         is_plain = isinstance(read_scalar(text), str) and "\n" not in text
         style = '"' if "\n" in text else None if is_plain else "'"
-        return self.represent_scalar(_STR, text, style=style)
+        return self.represent_scalar(_STR, text, style=style)  # pyright: ignore[reportUnknownMemberType]
 
     def represent_number(self, number: float) -> yaml.ScalarNode:
         """Write a double. C reads subnormal ones in hexadecimal only."""
         if number and abs(number) < sys.float_info.min:
-            return self.represent_scalar(_STR, number.hex())  # a text to PyYAML, so without a tag
+            # A text to PyYAML, so it has no tag.
+            return self.represent_scalar(_STR, number.hex())  # pyright: ignore[reportUnknownMemberType]
         return self.represent_float(number)
 
 
@@ -317,6 +318,8 @@ class _FileReader:
                 raise ParameterYamlError(f"Will not support aliasing at line {line}\n")
             case yaml.DocumentStartEvent():
                 self._key_follows = True
+            case _:
+                pass
 
     def _start_map(self) -> None:
         self._depth += 1
