@@ -63,6 +63,8 @@ def _is_exact(text: str, number: float) -> bool:
     if number == 0 or "x" not in text.lower():
         return False
     digits, _, power = text.lower().lstrip("+-").removeprefix("0x").partition("p")
+    if len(power) > 20:
+        return False  # Python may refuse to read it
     whole, _, fraction = digits.partition(".")
     mantissa = int(whole + fraction, 16)
     numerator, denominator = abs(number).as_integer_ratio()

@@ -48,7 +48,7 @@ class ParameterYamlError(ValueError):
 
     def __init__(self, message: str, reason: str = "") -> None:
         super().__init__(message)
-        self.reason = reason or message
+        self.reason = reason or message.strip()
 
 
 def read_value(text: str, into: ParameterVariant) -> None:
@@ -114,8 +114,8 @@ def read_file(path: str, entry: Callable[[str], Entry], *, everything: bool = Fa
 
 
 def value_text(value: Value | bytes) -> str:
-    """A value as `-p name:=...` and `ifgen param set` take it; bytes as numbers, which only `set` takes."""
-    plain = list(value) if isinstance(value, bytes) else value
+    """A value as `-p name:=...` and `ifgen param set` take it; bytes and `[]` are for `set` only."""
+    plain = list(value or ()) if value is None or isinstance(value, bytes) else value
     text: str = yaml.dump(plain, Dumper=_Dumper, default_flow_style=True, width=sys.maxsize)
     return text.removesuffix("\n").removesuffix("\n...")
 
@@ -135,7 +135,7 @@ def file_text(node: str, parameters: Mapping[str, Value | bytes]) -> str:
 
 
 def is_beyond_files(value: Value | bytes) -> bool:
-    """Whether a value is one that no parameter file can hold: rcl reads no bytes, and `[]` as no value."""
+    """Whether no parameter file can hold a value: rcl reads no bytes, and `[]` as no value (None)."""
     return isinstance(value, bytes) or value is None or (isinstance(value, list) and not value)
 
 

@@ -33,7 +33,8 @@ def dump_parameters(
     with open_session(transport, use_sim_time=use_sim_time) as session:
         remote = RemoteParameters(session, find_node(session, node, spin_time), patience)
         names = remote.names()
-        values = remote.values(names) if names else {}
+        found = remote.values(names) if names else {}
+    values = {name: value for name, value in found.items() if value.type}  # the others have none
     if as_json:
         tree = parameter_yaml.nested({name: json_value(value) for name, value in values.items()})
         print(json.dumps({remote.node: {parameter_yaml.PARAMETERS_KEY: tree}}, indent=2))
@@ -87,7 +88,8 @@ def _read(file: str) -> dict[str, dict[str, Value]]:
     try:
         parameter_yaml.read_file(file, lambda node: found.setdefault(node, {}), everything=True)
     except parameter_yaml.ParameterYamlError as error:
-        raise ToolError(f"{file}: {error.reason}", _FORM if "no YAML" not in error.reason else "") from None
+        is_about_form = error.reason == str(error).strip()
+        raise ToolError(f"{file}: {error.reason}", _FORM if is_about_form else "") from None
     if not found:
         raise ToolError(f"{file} is no parameter file", _FORM)
     sections: dict[str, dict[str, Value]] = {}

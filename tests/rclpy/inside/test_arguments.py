@@ -178,6 +178,7 @@ def test_endless_numbers_are_text() -> None:
     """Python refuses to read more than 4,300 digits; C finds them too large for any type."""
     assert read_scalar("1" * 5000) == "1" * 5000
     assert read_scalar("1" * 25) == float("1" * 25)
+    assert read_scalar(f"0x1p-{'0' * 5000}1074") == f"0x1p-{'0' * 5000}1074"
 
 
 @given(st.text(max_size=10))

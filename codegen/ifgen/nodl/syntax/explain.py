@@ -214,9 +214,8 @@ def yaml_surprise(node: Node, expected: str) -> str | None:
     if isinstance(node.value, str):
         if "number" not in expected and "integer" not in expected:
             return None
-        if (
-            _JSON_NUMBER.fullmatch(written) and "64 bits" not in expected
-        ):  # a float is no parameter of type int
+        is_of_int = "64 bits" in expected  # a parameter, of which no float is a value
+        if _JSON_NUMBER.fullmatch(written) and not is_of_int:
             return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{_as_float(written)}`"
         if _OCTAL.fullmatch(written):
             return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{int(written, 8)}`"
