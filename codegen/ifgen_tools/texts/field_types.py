@@ -9,7 +9,7 @@ from typing import Any, Final
 
 _ARRAY: Final = re.compile(r"(?P<element>.+)\[(?P<size>\d+)\]")
 _SEQUENCE: Final = re.compile(r"sequence<(?P<element>.+?)(, (?P<size>\d+))?>")
-_BOUND: Final = re.compile(r"<\d+>")
+_BOUND: Final = re.compile(r"<(\d+)>")
 
 INTEGERS: Final = {
     f"{prefix}int{bits}": (0, 2**bits - 1) if prefix else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
@@ -24,7 +24,8 @@ class FieldType:
     """The type of a field: that of one element, and how many there are.
 
     `element` is such as `double`, `string` or `geometry_msgs/msg/Point`. `size` is the number of elements of
-    an array, the bound of a sequence, or None. `attribute` is the name of the field in Python.
+    an array, the bound of a sequence, or None. `attribute` is the name of the field in Python. `longest` is
+    the bound of a string in characters.
     """
 
     element: str
@@ -32,6 +33,7 @@ class FieldType:
     is_array: bool = False
     is_sequence: bool = False
     size: int | None = None
+    longest: int | None = None
 
     @property
     def is_message(self) -> bool:
@@ -86,14 +88,19 @@ def element_class(message: Any, name: str) -> type[Any]:
 
 
 def _read(text: str, attribute: str, folder: str) -> FieldType:
+    bound = _BOUND.search(text)
+    longest = int(bound[1]) if bound else None
     if match := _ARRAY.fullmatch(text):
+        size: int | None = int(match["size"])
         return FieldType(
-            _element(match["element"], folder), attribute, is_array=True, size=int(match["size"])
+            _element(match["element"], folder), attribute, is_array=True, size=size, longest=longest
         )
     if match := _SEQUENCE.fullmatch(text):
         size = int(match["size"]) if match["size"] else None
-        return FieldType(_element(match["element"], folder), attribute, is_sequence=True, size=size)
-    return FieldType(_element(text, folder), attribute)
+        return FieldType(
+            _element(match["element"], folder), attribute, is_sequence=True, size=size, longest=longest
+        )
+    return FieldType(_element(text, folder), attribute, longest=longest)
 
 
 def _element(text: str, folder: str) -> str:

@@ -88,7 +88,7 @@ def _converted(
     if type_.is_collection:
         return _list(message, name, type_, value, where, stamps)
     if not type_.is_message:
-        return _basic(type_.element, value, where)
+        return _basic(type_, value, where)
     inner = getattr(message, type_.attribute)
     if type_.element == _HEADER and value == "auto":
         stamps.append(lambda stamp: setattr(inner, "stamp", stamp))
@@ -110,7 +110,7 @@ def _list(message: Any, name: str, type_: FieldType, values: Any, where: str, st
         raise ToolError(f"{where!r} has at most {type_.size} elements, and {len(values)} are given")
     places = [f"{where}[{index}]" for index in range(len(values))]
     if not type_.is_message:
-        return [_basic(type_.element, value, place) for value, place in zip(values, places, strict=True)]
+        return [_basic(type_, value, place) for value, place in zip(values, places, strict=True)]
     cls = element_class(message, name)
     elements = [cls() for _ in values]
     for element, value, place in zip(elements, values, places, strict=True):
@@ -118,9 +118,9 @@ def _list(message: Any, name: str, type_: FieldType, values: Any, where: str, st
     return elements
 
 
-def _basic(type_: str, value: Any, where: str) -> Any:
+def _basic(type_: FieldType, value: Any, where: str) -> Any:
     """A value in the Python type of the field."""
-    match type_:
+    match type_.element:
         case "boolean":
             if isinstance(value, bool) or value in (0, 1):
                 return bool(value)
@@ -128,7 +128,12 @@ def _basic(type_: str, value: Any, where: str) -> Any:
         case "float" | "double" | "long double":
             return _float(value, where)
         case "string" | "wstring":
-            return _text(value, where)
+            text = _text(value, where)
+            if type_.longest is not None and len(text) > type_.longest:  # a real ROS does not check it
+                raise ToolError(
+                    f"{where!r} has at most {type_.longest} characters, and {len(text)} are given"
+                )
+            return text
         case "char" | "wchar":  # of IDL: that of .msg is uint8
             if isinstance(value, str) and len(value) == 1:
                 return value
@@ -138,7 +143,7 @@ def _basic(type_: str, value: Any, where: str) -> Any:
                 return value.encode("latin-1", "replace") if isinstance(value, str) else value
             return bytes([_integer("uint8", value, where)])
         case _:
-            return _integer(type_, value, where)
+            return _integer(type_.element, value, where)
 
 
 def _text(value: Any, where: str) -> str:

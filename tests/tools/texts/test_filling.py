@@ -23,6 +23,8 @@ bool flag
 byte one
 geometry_msgs/Point[<=2] points
 string[] names
+string<=4 short
+string<=2[] shorts
 """
 
 
@@ -103,6 +105,8 @@ def test_the_time_of_sending(message: Any) -> None:
             "the value of 'text' does not fit: a text cannot hold a NUL: strings of ROS end there",
             "",
         ),
+        ("{short: abcdef}", "'short' has at most 4 characters, and 6 are given", ""),
+        ("{shorts: [ab, abc]}", "'shorts[1]' has at most 2 characters, and 3 are given", ""),
         ("{flag: maybe}", "the value of 'flag': expected true or false, got \"maybe\"", ""),
         ("{one: 256}", "the value of 'one': expected uint8, which is 0 to 255, got 256", ""),
         (
