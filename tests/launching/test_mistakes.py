@@ -6,6 +6,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import click
 import pytest
@@ -253,3 +254,30 @@ def test_command_line(words: list[str], code: int, message: str, tmp_path: Path)
     assert (done.returncode, done.stdout) == (code, "")
     assert done.stderr.startswith("error: ")
     assert message in done.stderr
+
+
+KINDS_OF_VALUES = (
+    *("text", "5", "1e400", "9" * 5000, ".nan", "null", "2026-01-31", "12:30:45", "{}", "a: b", "{a: b}", "[]", "[1, a]"),
+    *("[[1]]", "[{}]", "[null]", "[1", '"', '"a\\0b"', '"\\ud800"', "[" * 200, "*a", "&a [*a]", "!!binary AQ==", "%", "@"),
+    *("!!set {a}", "!!python/object:os.system x", "!!int x", "- a\n- b", "'é'", "<<", "=", "? [a]\n: b"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("value", KINDS_OF_VALUES, ids=[ascii(value)[:20] for value in KINDS_OF_VALUES])
+def test_every_kind_of_value(value: str, record: Recorded, capsys: pytest.CaptureFixture[str]) -> None:
+    """A parameter takes it, or one line says why not, in each kind of launch file."""
+    made = f"Node(executable='true', parameters=[{{'p': LaunchConfiguration('x', default={value!r})}}])"
+    files = {
+        "a.launch.py": described(made),
+        "a.launch.xml": f"<launch><node exec='true'><param name='p' value={quoteattr(value)}/></node></launch>",
+        "a.launch.yaml": f"launch: [node: {{exec: 'true', param: [{{name: p, value: {value}}}]}}]",
+    }
+    for name, text in files.items():
+        try:
+            recorder = record(name, text)
+        except LaunchError as error:
+            said = [error.message]
+        else:
+            said = [line for line in capsys.readouterr().out.splitlines() if line.startswith("[ERROR]")]
+            assert len(said) == recorder.exit_code, (name, said)
+        assert all("Error: " not in line and len(line) < 600 for line in said), (name, said)
