@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ifgen_tools import discovery
-from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen_tools.errors import Absent, did_you_mean
 from ifgen_tools.names import full_name, is_hidden
 
 if TYPE_CHECKING:
@@ -56,4 +56,4 @@ def find_node(session: Session, name: str, spin_time: float | None = None) -> st
     advice = did_you_mean(wanted, known) or (
         "see `ifgen node list`" if known else "no node is running, or none that this process can see"
     )
-    raise ToolError(f"there is no node {wanted!r}", advice)
+    raise Absent(f"there is no node {wanted!r}", advice)

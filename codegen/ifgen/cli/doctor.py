@@ -23,6 +23,7 @@ from ifgen.cli.arguments import format_ as format_option
 from ifgen.cli.arguments import include as include_option
 from ifgen.cli.running import other_processes
 from ifgen.config import installing
+from ifgen.running import elsewhere
 
 # Late imports: only `--graph` needs these.
 
@@ -133,6 +134,9 @@ def examine() -> Iterator[Finding]:
     yield _codec()
     yield Finding("local transport", "works anywhere: ifgen run --transport local PROGRAM")
     yield _other_processes()
+    yield Finding("nodes", elsewhere.everywhere() or "none of this user run on this machine now")
+    if reason := elsewhere.reason_against_domain("rclpy"):
+        yield Finding("ROS domain", reason)
     yield from _real_rclpy(system)
 
 
@@ -225,6 +229,7 @@ def _ask_real() -> list[str]:
     try:
         asked = subprocess.run(
             [sys.executable, "-c", _ASK_REAL],
+            env=elsewhere.usable_environment(),
             capture_output=True,
             text=True,
             timeout=_TIME_LIMIT,

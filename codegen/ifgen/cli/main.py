@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, Literal
 
 import click
+from click.core import ParameterSource
 
 from ifgen import resources
 from ifgen.cli import completion, further, terminal
@@ -68,7 +69,10 @@ def _told(error: click.ClickException) -> Iterator[str]:
     if near := getattr(error, "possibilities", None):
         message, meant = error.message, " or ".join(map(repr, near))
     message = " ".join(message.split()).rstrip(".")  # lists of choices have a line for each
-    yield f"error: {message[:1].lower()}{message[1:]}"
+    if isinstance(error, click.BadParameter) and (variable := _variable_of(error)):
+        message = f"the environment variable {variable} has an invalid value: {error.message.rstrip('.')}"
+    first = message[:1].lower() if message[1:2].islower() else message[:1]
+    yield f"error: {first}{message[1:]}"
     if isinstance(error, click.NoSuchOption):
         meant = meant or _CALLED_OTHERWISE.get(error.option_name, "")
     help = f"did you mean {meant.rstrip('?')}? " if meant else getattr(error, "help", "")
@@ -76,6 +80,15 @@ def _told(error: click.ClickException) -> Iterator[str]:
         help += f"see `{error.ctx.command_path} --help`"
     if help:
         yield f"  = help: {help}"
+
+
+def _variable_of(error: click.BadParameter) -> str:
+    """The environment variable that has a wrong value; empty if the value was on the command line."""
+    option, context = error.param, error.ctx
+    if option is None or option.name is None or context is None:
+        return ""
+    is_of_environment = context.get_parameter_source(option.name) is ParameterSource.ENVIRONMENT
+    return str(option.envvar) if is_of_environment else ""
 
 
 _CALLED_OTHERWISE: Final = {"--dry-run": "'--check'"}
@@ -250,6 +263,7 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
 )
 @click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
 @click.option("--until-all-end", is_flag=True, hidden=True)  # `ifgen launch --one-process`
+@click.option("--of-launch", is_flag=True, hidden=True)  # which has said already who runs elsewhere
 @click.argument(
     "program",
     metavar="FILE|-m MODULE|PACKAGE NODE [ARGS]...",
@@ -262,6 +276,7 @@ def run(
     in_lockstep: bool,
     generate_first: bool,
     until_all_end: bool,
+    of_launch: bool,
     program: tuple[str, ...],
 ) -> int:
     """Run programs written for rclpy, with `:` between them.
@@ -285,7 +300,12 @@ def run(
         invalidate_caches()  # Python may have looked into the folders already
     programs = running.split(program, settings.output)
     return running.run(
-        programs, transport, settings.output, in_lockstep=in_lockstep, until_all_end=until_all_end
+        programs,
+        transport,
+        settings.output,
+        in_lockstep=in_lockstep,
+        until_all_end=until_all_end,
+        tells=not of_launch,
     )
 
 

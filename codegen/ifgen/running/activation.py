@@ -18,6 +18,7 @@ from typing import Literal
 from ifgen import resources
 from ifgen.config import installing
 from ifgen.reading import manifest
+from ifgen.running import elsewhere
 
 Transport = Literal["local", "rclpy"]
 
@@ -41,6 +42,8 @@ def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | 
             "there is no real rclpy to import: source /opt/ros/jazzy/setup.sh, "
             f"or run `{installing.add_extra('ros')}` (Linux x86_64)"
         )
+    if reason := elsewhere.reason_against_domain(chosen):
+        raise ActivationError(reason)
     _refuse_mixture(chosen, real)
     own, bundled = import_folders(generated) if generated else [], str(resources.bundled_generated())
     libraries = str(resources.libraries())

@@ -79,6 +79,7 @@ def launch(
     else the highest exit code of a process that died by itself.
     """
     from ifgen.config.settings import settle
+    from ifgen.running import elsewhere
 
     paths, given = _split(words)
     output = settle().output
@@ -110,6 +111,7 @@ def launch(
         raise
     except Exception as error:
         raise explained(error) from error
+    elsewhere.tell(chosen)
     return host.run(include)
 
 

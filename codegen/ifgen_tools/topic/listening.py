@@ -70,6 +70,7 @@ def wait_for_topic(session: Session, topic: str) -> type[Any]:
     """The class of a topic, once somebody has it; says so if nobody has it yet. Raises ToolError."""
     if not topic_types(session.node, topic):
         print(f"WARNING: topic [{topic}] does not appear to be published yet", file=sys.stderr, flush=True)
+        session.lookout.tell_of_other()
         session.wait_for(lambda: bool(topic_types(session.node, topic)))
     return topic_class(session.node, topic)
 
@@ -107,3 +108,5 @@ def listen(
         subscribe(cls, topic, hear, profile, raw=raw, event_callbacks=events)
     except UnsupportedEventTypeError:  # this middleware does not tell
         subscribe(cls, topic, hear, profile, raw=raw)
+    if not session.node.count_publishers(topic):
+        session.lookout.tell_of_other()

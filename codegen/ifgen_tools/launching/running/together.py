@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Final
@@ -14,6 +13,7 @@ from launch_ros.actions import Node
 
 from ifgen_tools.launching.errors import LaunchError
 from ifgen_tools.launching.running.host import LaunchHost
+from ifgen_tools.launching.running.supervision import RUN
 
 _NAME: Final = "nodes-1"
 
@@ -51,7 +51,7 @@ class TogetherHost(LaunchHost):
         return ""
 
     def _python(self) -> list[str]:
-        return [sys.executable, "-m", "ifgen", "run", "--transport", self.transport]
+        return [*RUN, "--of-launch", "--transport", self.transport]
 
     def _start_all(self) -> None:
         self._has_started = True
