@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 LIMIT: Final = 0.2
 """Seconds for which programs may answer."""
 
-FOLDER: Final = Path("/tmp")  # noqa: S108 - rmw_local.transports.doorbell says why
+FOLDER: Final = Path("/tmp")
 """The folder with a folder for each user, `ifgen-UID`, which has one for each domain with its doorbells."""
 
 BELL: Final = ".bell"
@@ -67,8 +67,11 @@ class Nodes:
 def elsewhere(transport: str, domain: int) -> str:
     """Say where nodes run, other than on this transport in this domain; empty if none are found.
 
-    Other domains are named only if the other transport has nobody in this domain.
+    Other domains are named only if the other transport has nobody in this domain. Whoever wants to see no other
+    process, by ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, is told of none.
     """
+    if _is_off():
+        return ""
     other = _other(transport)
     found = {(other, number): nodes for number, nodes in _everybody(other).items()}
     if (other, domain) in found:
@@ -82,7 +85,7 @@ def elsewhere(transport: str, domain: int) -> str:
 def on_other(transport: str, domain: int) -> str:
     """Say how many nodes run in this domain on the other transport; empty if none are found."""
     other = _other(transport)
-    nodes = _everybody(other).get(domain)
+    nodes = None if _is_off() else _everybody(other).get(domain)
     return "" if nodes is None else _sentence((other, domain), nodes, transport, domain)
 
 
@@ -91,6 +94,8 @@ def is_elsewhere_only(transport: str, domain: int) -> bool:
 
     It costs next to nothing where nobody is there.
     """
+    if _is_off():
+        return False
     if transport == "local":
         return bool(_ports_of(domain)) and domain in on_real_rclpy() and domain not in on_local(domain)
     return domain in on_local(domain) and domain not in on_real_rclpy()
@@ -139,6 +144,10 @@ def on_real_rclpy() -> dict[int, Nodes]:
         for domain in _domains(process, ports):
             found.setdefault(domain, Nodes()).add(1, is_least=True)
     return found
+
+
+def _is_off() -> bool:
+    return os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE") == "OFF"
 
 
 def _other(transport: str) -> str:

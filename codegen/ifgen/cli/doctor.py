@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Literal
 
 import click
+from click.core import ParameterSource
 
 from ifgen import resources
 from ifgen.cli import terminal
@@ -69,6 +70,7 @@ _TESTED = _WITH_WHEELS  # the native tests run on the wheels
 @click.option(
     "--transport",
     type=click.Choice(["local", "rclpy", "auto"]),
+    envvar="IFGEN_TRANSPORT",
     help="With --graph: where to look, as for `ifgen graph`.",
 )
 @include_option
@@ -87,8 +89,10 @@ def doctor(
     """
     if graph:
         return _graph_doctor(programs, transport or "auto", include, format_)
-    if programs or transport or include or format_ != "text":
-        raise click.UsageError("These options need --graph", click.get_current_context())
+    context = click.get_current_context()
+    is_named = context.get_parameter_source("transport") is ParameterSource.COMMANDLINE
+    if programs or is_named or include or format_ != "text":
+        raise click.UsageError("These options need --graph", context)
     for finding in list(examine()):  # all at once: some take a while
         print(f"{finding.subject + ':':17}{finding.found}")
         if finding.advice:

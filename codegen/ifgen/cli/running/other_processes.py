@@ -42,7 +42,12 @@ def look() -> tuple[str, str | None]:
     """Say which processes are reached and how many nodes are there, and why that is not more."""
     try:
         asked = subprocess.run(
-            [sys.executable, "-c", _LOOK], env=elsewhere.usable_environment(), capture_output=True, text=True, timeout=_TIME_LIMIT, check=False
+            [sys.executable, "-c", _LOOK],
+            env=elsewhere.usable_environment(),
+            capture_output=True,
+            text=True,
+            timeout=_TIME_LIMIT,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return "not reached", f"a node that looks for others was not made within {_TIME_LIMIT:.0f} s"
