@@ -1,12 +1,12 @@
-"""Who runs nodes on this machine: on which transport, and in which ROS domain.
+"""The nodes that run on this machine: on which transport, and in which ROS domain.
 
-A user who looks at one transport learns nothing of nodes on the other. This module asks without joining either, in
-at most `LIMIT` seconds. The doorbells of the local transport say how many nodes they have (`COUNT`). A middleware of
-DDS is not asked, because to discover takes seconds: what is known of a program on the real rclpy is that it has
-loaded rcl, and the domain that its UDP ports stand for by the rule of RTPS (section 9.6.1.1).
+A user who looks at one transport learns nothing of nodes on the other. This module asks without joining
+either, in at most `LIMIT` seconds. The doorbells of the local transport say how many nodes they have. A
+middleware of DDS is not asked, because discovery takes seconds. A program on the real rclpy is one that has
+loaded rcl, and its UDP ports stand for its domain by a rule of RTPS (section 9.6.1.1 of the specification).
 
-It sees the programs of this user only, on Linux only for real rclpy; no nodes of other machines, and none of local
-programs that use a router or a file of Zenoh's configuration.
+This finds programs of this user on this machine; those on the real rclpy on Linux only. It does not find
+local programs that use a router or a file of Zenoh's configuration.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _FIRST_PORT: Final = 7400
 _UNICAST: Final = 10  # the offset of the first participant, which has two ports, as all after it
 _DOMAINS: Final = 233
 _TOOLS: Final = ("ros2", "ifgen")
-_RUNNERS: Final = ("demo", "launch", "run", "test")  # commands of ifgen whose nodes are the user's
+_RUNNERS: Final = ("bag", "demo", "launch", "run", "test")  # commands of ifgen whose nodes are the user's
 _NAMES: Final = {"local": "the local transport", "rclpy": "the real rclpy"}
 _MOST: Final = 3  # places in one sentence
 
@@ -67,8 +67,8 @@ class Nodes:
 def elsewhere(transport: str, domain: int) -> str:
     """Say where nodes run, other than on this transport in this domain; empty if none are found.
 
-    Other domains are named only if the other transport has nobody in this domain. Whoever wants to see no other
-    process, by ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, is told of none.
+    Other domains are named only if the other transport has nobody in this domain. None are named under
+    ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, where no other process can be seen.
     """
     if _is_off():
         return ""
@@ -108,7 +108,7 @@ def everywhere() -> str:
 
 
 def on_local(domain: int | None = None) -> dict[int, Nodes]:
-    """The nodes on the local transport by domain, or of one domain, without hidden ones and those of tools."""
+    """The visible nodes on the local transport by domain, or of one domain."""
     if not hasattr(os, "getuid"):
         return {}  # Windows has no such sockets
     home = FOLDER / f"ifgen-{os.getuid()}"
@@ -230,7 +230,8 @@ def _programs_on_ros() -> Iterator[Path]:
 
 
 def _is_tool(process: Path) -> bool:
-    words = [os.path.basename(os.fsdecode(word)) for word in (process / "cmdline").read_bytes().split(b"\0")]
+    line = (process / "cmdline").read_bytes()
+    words = [Path(os.fsdecode(word)).name for word in line.split(b"\0")]
     if "ros2-daemon" in words:
         return True
     starters = [place for place, word in enumerate(words[:3]) if word in _TOOLS]
@@ -242,7 +243,7 @@ def _domains(process: Path, ports: dict[str, int]) -> Iterable[int]:
     bound = set[int]()
     for entry in (process / "fd").iterdir():
         with suppress(OSError):
-            if (socket := re.fullmatch(r"socket:\[(\d+)\]", os.readlink(entry))) and socket[1] in ports:
+            if (socket := re.fullmatch(r"socket:\[(\d+)\]", str(entry.readlink()))) and socket[1] in ports:
                 bound.add(ports[socket[1]])
     found = {(port - _FIRST_PORT) // _BY_DOMAIN for port in bound if _is_of_rtps(port, bound)}
     if found or not (bound or b"/librmw_zenoh" in (process / "maps").read_bytes()):

@@ -1,4 +1,4 @@
-"""Tells a user who looks where nobody is that nodes run elsewhere: on the other transport, or in another domain."""
+"""Tells a user who looks where nobody is about nodes on the other transport, or in another domain."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _EVERY: Final = 1.0
 class Lookout:
     """Says it once, in one line on stderr; never again once a visible node has been seen here.
 
-    `transport` is that of `node`, which does not count. Assign to `say` what is to be done with the line instead.
+    `transport` is that of `node`, which does not count. Assign to `say` to have the line elsewhere.
     """
 
     def __init__(self, transport: str, node: Node) -> None:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import redirect_stdout
 from importlib import import_module, invalidate_caches
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal, cast
 
 import click
 from click.core import ParameterSource
@@ -282,14 +282,17 @@ def run(
     """Run programs written for rclpy, with `:` between them.
 
     Each behaves as if it ran alone. When the last one ends, the others are interrupted as by Ctrl-C. For
-    example: `ifgen run server.py : client.py 41 1`. All arguments after FILE or MODULE belong to the program,
-    including --ros-args.
+    example: `ifgen run server.py : client.py 41 1`. Arguments after FILE or MODULE belong to the program,
+    including --ros-args, except options of this command that the FILE does not mention.
 
     PACKAGE is a generated one, sources in this folder or in src, or one that is installed. A FILE of that
     name comes first.
     """
     from ifgen.running import run as running
 
+    words, late = _late_options(program)
+    transport = cast("Literal['local', 'rclpy', 'auto']", late.get("--transport", transport))
+    in_lockstep, generate_first = in_lockstep or "--lockstep" in late, generate_first or "--generate" in late
     settings = settle()
     if generate_first:
         from ifgen.cli import generate
@@ -298,7 +301,7 @@ def run(
             # stdout is the programs'
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
-    programs = running.split(program, settings.output)
+    programs = running.split(words, settings.output)
     return running.run(
         programs,
         transport,
@@ -307,6 +310,27 @@ def run(
         until_all_end=until_all_end,
         tells=not of_launch,
     )
+
+
+def _late_options(program: Sequence[str]) -> tuple[Sequence[str], Mapping[str, str]]:
+    """Take options of `ifgen run` from the words after the first program, and say so."""
+    from ifgen.running import late_options
+
+    context = click.get_current_context()
+    options = {"--transport": "transport", "--lockstep": "in_lockstep", "--generate": "generate_first"}
+    given = [
+        option
+        for option, name in options.items()
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+    ]
+    words, late = late_options.take(program, given)
+    if late:
+        taken = " ".join(" ".join(filter(None, each)) for each in late.items())
+        print(
+            f"note: `ifgen run` takes {taken} as its own: the place of its options is before the program",
+            file=sys.stderr,
+        )
+    return words, late
 
 
 def _looked_at(findings: Findings) -> str:

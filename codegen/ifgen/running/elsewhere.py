@@ -13,7 +13,7 @@ _LAST_OF_DDS: Final = 232
 
 
 def reason_against_domain(transport: str) -> str:
-    """What is wrong with ROS_DOMAIN_ID for a transport; empty if nothing is."""
+    """The reason why no program can start with ROS_DOMAIN_ID on a transport; empty if it can."""
     domain_id: Any = import_module("ifgen_runtime.domain_id")
     text = os.environ.get("ROS_DOMAIN_ID")
     try:
