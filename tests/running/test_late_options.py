@@ -34,7 +34,7 @@ def test_words(
     line: str, left: str, found: dict[str, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.py").touch()
+    (tmp_path / "a.py").write_text("# ifgen run a.py --transport local\n")
     (tmp_path / "own.py").write_text("parser.add_argument('--transport')\n")
     assert take(line.split(), ()) == (left.split(), found)
 

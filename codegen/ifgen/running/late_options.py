@@ -17,7 +17,7 @@ def take(words: Sequence[str], given: Collection[str]) -> tuple[list[str], dict[
 
     `--transport` with a transport, `--lockstep` and `--generate` count, up to `--` or `--ros-args` of each
     program. None counts that is among those `given` before the programs, or that the file of its program has
-    as text: then it is the program's.
+    in quotes: then it is the program's.
     """
     left: list[str] = []
     found: dict[str, str] = {}
@@ -31,7 +31,7 @@ def take(words: Sequence[str], given: Collection[str]) -> tuple[list[str], dict[
             text, is_open = (None, True) if word == ":" else (_text_of(word), True)
         elif word in _ENDS:
             is_open = False
-        elif is_open and name not in given and name not in text:
+        elif is_open and name not in given and not _is_known(name, text):
             value = value if equals else "".join(words[index + 1 : index + 2])
             if name == "--transport" and value in _TRANSPORTS:
                 found[name] = value
@@ -43,6 +43,10 @@ def take(words: Sequence[str], given: Collection[str]) -> tuple[list[str], dict[
                 continue
         left.append(word)
     return left, found
+
+
+def _is_known(option: str, text: str) -> bool:
+    return f"'{option}" in text or f'"{option}' in text
 
 
 def _text_of(program: str) -> str:
