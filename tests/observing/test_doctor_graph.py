@@ -184,3 +184,27 @@ def test_wrong_usage(project: Path, domain: dict[str, str]) -> None:
     without = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert without.returncode == 2
     assert "these options need --graph" in without.stderr
+
+
+@pytest.mark.slow
+def test_healthy_nodes_of_other_processes_agree(
+    project: Path, domain: dict[str, str], tmp_path: Path
+) -> None:
+    """Their own definitions are unknown where the doctor looks, those of their parameters are known."""
+    command = [sys.executable, "-m", "ifgen", "run", "--transport", "local", str(PROGRAM)]
+    environment = {**os.environ, **domain}
+    started = [
+        subprocess.Popen([*command, name, "new"], cwd=project, env=environment)
+        for name in ("driver", "monitor")
+    ]
+    try:
+        found = ""
+        for _ in range(20):  # they come one after the other
+            found = doctor(tmp_path, domain, "--transport", "local").stdout
+            if found.startswith("2 nodes"):
+                break
+        assert found == "2 nodes: all definitions agree\n"
+    finally:
+        for each in started:
+            each.kill()
+            each.wait()
