@@ -92,10 +92,10 @@ def run(
     """
     if in_lockstep:
         transport = _transport_of_lockstep(transport)
-    files = (Path(words[0]) for words in command_lines if words[0] != "-m")
+    files = [Path(words[0]) for words in command_lines if words[0] != "-m"]
     own = next(filter(None, map(folder_around, files)), None)
     try:
-        chosen = put_on_path(transport, own or generated)
+        chosen = put_on_path(transport, own or generated, {str(file.resolve().parent) for file in files})
     except ActivationError as error:
         raise UsageError([Diagnostic("no-transport", str(error))]) from None
     try:
