@@ -101,6 +101,11 @@ def is_elsewhere_only(transport: str, domain: int) -> bool:
     return domain in on_local(domain) and domain not in on_real_rclpy()
 
 
+def is_here(transport: str, domain: int) -> bool:
+    """Whether nodes run on this transport in this domain; those of this process count on the local one."""
+    return domain in (on_local(domain) if transport == "local" else on_real_rclpy())
+
+
 def everywhere() -> str:
     """Say where nodes run; empty if none are found."""
     found = {(transport, number): n for transport in _NAMES for number, n in _everybody(transport).items()}

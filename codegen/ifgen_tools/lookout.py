@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 _FIRST: Final = 0.3
 """Seconds after which a tool that waits has a look whether it waits in the wrong place."""
 
-_EVERY: Final = 1.0
-"""Seconds between this look and the others."""
+_EVERY: Final = 3.0
+"""Seconds between this look and the others. By then, the nodes of other machines are discovered."""
 
 
 class Lookout:
@@ -33,31 +33,28 @@ class Lookout:
         self._transport = transport
         self._node = node
         self._due = time.monotonic() + _FIRST
-        self._is_sure = False  # that the graph has been discovered
+        self._is_late = False
         self._has_met = False
         self._has_told = False
 
     def look(self) -> None:
         """Say it if a tool has waited for a while, and nobody is here. Costs nothing until then."""
-        if self._has_met or self._has_told or time.monotonic() < self._due:
+        if self._has_told or time.monotonic() < self._due or self._meets():
             return
-        # At first, discovery may go on: a program that runs on this transport will be seen soon.
-        self.look_around(self._is_sure or self._is_certain())
-        self._is_sure = True
+        if self._is_certain() or (self._is_late and not self._is_expected()):
+            self._tell(neighbours.elsewhere(self._transport, self._domain))
+        self._is_late = True
         self._due = time.monotonic() + _EVERY
 
-    def look_around(self, is_sure: bool = True) -> None:
-        """Say it if nobody is here; the caller `is_sure` that all of them would be seen."""
-        if self._has_met or self._has_told:
-            return
-        self._has_met = self._has_company()
-        if is_sure and not self._has_met:
+    def look_around(self) -> None:
+        """Say it if nobody is here, now that the graph has been discovered."""
+        if not (self._has_told or self._meets()):
             self._tell(neighbours.elsewhere(self._transport, self._domain))
 
     def look_back(self) -> None:
         """Say it at the end of a tool that has not waited for anybody, if it is certain."""
-        if not (self._has_met or self._has_told):
-            self.look_around(self._is_certain())
+        if not (self._has_told or self._meets()) and self._is_certain():
+            self._tell(neighbours.elsewhere(self._transport, self._domain))
 
     def tell_of_other(self) -> None:
         """Say who is on the other transport, whoever is on this one: what the user wants is not."""
@@ -78,6 +75,15 @@ class Lookout:
 
     def _is_certain(self) -> bool:
         return neighbours.is_elsewhere_only(self._transport, self._domain)
+
+    def _is_expected(self) -> bool:
+        """Whether somebody runs on this transport who will be discovered."""
+        return neighbours.is_here(self._transport, self._domain)
+
+    def _meets(self) -> bool:
+        """Whether somebody has ever been here."""
+        self._has_met = self._has_met or self._has_company()
+        return self._has_met
 
     def _has_company(self) -> bool:
         return bool(node_names(self._node))
