@@ -61,13 +61,12 @@ class Lookout:
         if not self._has_told:
             self._tell(neighbours.on_other(self._transport, self._domain))
 
-    def advice(self, *, is_absent: bool) -> str:
-        """The same as help for an error, which may be that something `is_absent` here."""
+    def advice(self) -> str:
+        """The same as help for an error about something that is not here; empty if it has been said."""
         if self._has_told:
             return ""
-        if not self._has_company():
-            return neighbours.elsewhere(self._transport, self._domain)
-        return neighbours.on_other(self._transport, self._domain) if is_absent else ""
+        find = neighbours.on_other if self._meets() else neighbours.elsewhere
+        return find(self._transport, self._domain)
 
     @property
     def _domain(self) -> int:

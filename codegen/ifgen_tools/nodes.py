@@ -55,8 +55,8 @@ def find_node(session: Session, name: str, spin_time: float | None = None) -> st
     if is_there():
         if (number := node_names(session.node, True).count(wanted)) > 1:
             print(
-                f"warning: {number} nodes are called {wanted}: what they have is shown together, or that of one "
-                "of them only",
+                f"warning: {number} nodes are called {wanted}: what they have is shown together, or that of "
+                "one of them only",
                 file=sys.stderr,
             )
         return wanted

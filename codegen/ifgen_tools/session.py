@@ -168,10 +168,8 @@ def open_session(
         lookout = Lookout(chosen, node)
         try:
             yield Session(chosen, context, node, executor, lookout)
-        except ToolError as error:
-            if advice := lookout.advice(is_absent=isinstance(error, Absent)):
-                raise ToolError(error.message, "; ".join(filter(None, (error.help, advice)))) from None
-            raise
+        except Absent as error:
+            raise ToolError(error.message, "; ".join(filter(None, (error.help, lookout.advice())))) from None
         lookout.look_back()
     finally:
         executor.shutdown(timeout_sec=0)

@@ -90,6 +90,7 @@ def elsewhere(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     monkeypatch.setattr(neighbours, "_ports_of", lambda _: [7410])
     nodes = {int(os.environ["ROS_DOMAIN_ID"]): Nodes(5, is_least=True)}
     monkeypatch.setattr(neighbours, "on_real_rclpy", lambda: nodes)
+    monkeypatch.setattr(neighbours, "_everybody", {"rclpy": nodes, "local": {}}.__getitem__)
     monkeypatch.setattr(neighbours, "on_local", lambda _=None: {})
     monkeypatch.setattr(lookout, "_say", say)
     return said
