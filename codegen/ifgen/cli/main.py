@@ -112,7 +112,6 @@ class _Commands(click.Group):
             "generate",
             "graph",
             "init",
-            "interop",
             "lock",
             "new",
             "nodl",
@@ -125,7 +124,6 @@ class _Commands(click.Group):
         "breaking": "evolution.breaking",
         "demo": "running.demo",
         "diff": "evolution.diff",
-        "interop": "running.interop",
         "lock": "evolution.lock",
         "paths": "editors",
         "router": "running.router",
@@ -259,10 +257,9 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     "--lockstep",
     "in_lockstep",
     is_flag=True,
-    help="Each program in a process, with one virtual time: the same run every time (local transport).",
+    help="One virtual time for all programs: the same run every time (local transport).",
 )
 @click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
-@click.option("--until-all-end", is_flag=True, hidden=True)  # `ifgen launch --one-process`
 @click.option("--of-launch", is_flag=True, hidden=True)  # which has said already who runs elsewhere
 @click.argument(
     "program",
@@ -275,13 +272,12 @@ def run(
     transport: Literal["local", "rclpy", "auto"],
     in_lockstep: bool,
     generate_first: bool,
-    until_all_end: bool,
     of_launch: bool,
     program: tuple[str, ...],
 ) -> int:
     """Run programs written for rclpy, with `:` between them.
 
-    Each behaves as if it ran alone. When the last one ends, the others are interrupted as by Ctrl-C. For
+    Each runs in a process of its own. When the last one ends, the others are interrupted as by Ctrl-C. For
     example: `ifgen run server.py : client.py 41 1`. Arguments after FILE or MODULE belong to the program,
     including --ros-args, except options of this command that the FILE does not mention.
 
@@ -290,7 +286,8 @@ def run(
     """
     from ifgen.running import run as running
 
-    words, late = _late_options(program)
+    is_part = of_launch or running.is_one_of_several()
+    words, late = (program, {}) if is_part else _late_options(program)
     transport = cast("Literal['local', 'rclpy', 'auto']", late.get("--transport", transport))
     in_lockstep, generate_first = in_lockstep or "--lockstep" in late, generate_first or "--generate" in late
     settings = settle()
@@ -302,14 +299,7 @@ def run(
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
     programs = running.split(words, settings.output)
-    return running.run(
-        programs,
-        transport,
-        settings.output,
-        in_lockstep=in_lockstep,
-        until_all_end=until_all_end,
-        tells=not of_launch,
-    )
+    return running.run(programs, transport, settings.output, in_lockstep=in_lockstep, tells=not is_part)
 
 
 def _late_options(program: Sequence[str]) -> tuple[Sequence[str], Mapping[str, str]]:
