@@ -254,7 +254,8 @@ def _domains(process: Path, ports: dict[str, int]) -> Iterable[int]:
     if found or not (bound or b"/librmw_zenoh" in (process / "maps").read_bytes()):
         return found
     variables = (process / "environ").read_bytes().split(b"\0")
-    chosen = dict(each.partition(b"=")[::2] for each in variables).get(b"ROS_DOMAIN_ID", b"")
+    start = b"ROS_DOMAIN_ID="
+    chosen = next((each.removeprefix(start) for each in variables if each.startswith(start)), b"")
     return [int(chosen)] if chosen.isdigit() else [0]
 
 

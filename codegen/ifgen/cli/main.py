@@ -85,7 +85,7 @@ def _told(error: click.ClickException) -> Iterator[str]:
 def _variable_of(error: click.BadParameter) -> str:
     """The environment variable that has a wrong value; empty if the value was on the command line."""
     option, context = error.param, error.ctx
-    if option is None or option.name is None or context is None:
+    if option is None or context is None:
         return ""
     is_of_environment = context.get_parameter_source(option.name) is ParameterSource.ENVIRONMENT
     return str(option.envvar) if is_of_environment else ""
@@ -287,7 +287,7 @@ def run(
     from ifgen.running import run as running
 
     is_part = of_launch or running.is_one_of_several()
-    words, late = (program, {}) if is_part else _late_options(program)
+    words, late = _late_options(() if is_part else program)
     transport = cast("Literal['local', 'rclpy', 'auto']", late.get("--transport", transport))
     in_lockstep, generate_first = in_lockstep or "--lockstep" in late, generate_first or "--generate" in late
     settings = settle()
@@ -298,7 +298,7 @@ def run(
             # stdout is the programs'
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
-    programs = running.split(words, settings.output)
+    programs = running.split(program if is_part else words, settings.output)
     return running.run(programs, transport, settings.output, in_lockstep=in_lockstep, tells=not is_part)
 
 
