@@ -58,6 +58,7 @@ def wait_for_server(
     if not is_there():
         near = did_you_mean(name, [each.name for each in look()])
         print(f"waiting for the {kind} {name!r}...{f' {near}' if near else ''}", file=sys.stderr, flush=True)
+        session.lookout.tell_of_other()
         session.wait_for(is_there)
     types = [type_ for each in look() if each.name == name for type_ in each.types]
     if types and type_name not in types:

@@ -64,6 +64,7 @@ def _looking(context: click.Context) -> Generator[Session]:
     from ifgen_tools.session import open_session
 
     with open_session(context.params.get("transport") or "auto") as session:
+        session.lookout.say = lambda _: None  # the terminal belongs to the shell
         session.discover(None if session.transport == "local" else _PATIENCE)
         yield session
 

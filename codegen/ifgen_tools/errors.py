@@ -16,6 +16,10 @@ class ToolError(click.ClickException):
         self.help = help
 
 
+class Absent(ToolError):
+    """The error that a node, or what nodes have, is not there: it may be on the other transport."""
+
+
 def did_you_mean(name: str, known: list[str]) -> str:
     """Advice that names what is spelled like `name`; empty if nothing is."""
     from difflib import get_close_matches  # only a mistake needs it

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
-from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen_tools.errors import Absent, did_you_mean
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,5 +49,5 @@ def pick(found: Iterable[Named], name: str, what: str) -> Named:
     full = name if name.startswith("/") else f"/{name}"
     if full not in known:
         near = did_you_mean(full, sorted(known))
-        raise ToolError(f"there is no {what} {full!r}", near or f"see `ifgen {what} list`")
+        raise Absent(f"there is no {what} {full!r}", near or f"see `ifgen {what} list`")
     return known[full]

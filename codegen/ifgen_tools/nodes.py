@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING, Any, Final
 
 import click
 
 from ifgen_tools import discovery
-from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen_tools.errors import Absent, did_you_mean
 from ifgen_tools.names import full_name, is_hidden
 
 if TYPE_CHECKING:
@@ -38,7 +39,8 @@ def node_names(node: Node, include_hidden: bool = False) -> list[str]:
 def find_node(session: Session, name: str, spin_time: float | None = None) -> str:
     """The full name of a node that the user named, once it is there.
 
-    A hidden one, too: who names it wants it. Raises ToolError if it is not there after `spin_time` [s].
+    A hidden one, too: who names it wants it. If several have the name, it says so on stderr.
+    Raises ToolError if it is not there after `spin_time` [s].
     """
     wanted = name if name.startswith("/") else f"/{name}"
     domain = session.context.get_domain_id()
@@ -51,9 +53,15 @@ def find_node(session: Session, name: str, spin_time: float | None = None) -> st
 
     session.wait_for(is_known, _PATIENCE if spin_time is None else spin_time)
     if is_there():
+        if (number := node_names(session.node, True).count(wanted)) > 1:
+            print(
+                f"warning: {number} nodes are called {wanted}: what they have is shown together, or that of "
+                "one of them only",
+                file=sys.stderr,
+            )
         return wanted
     known = node_names(session.node)
     advice = did_you_mean(wanted, known) or (
         "see `ifgen node list`" if known else "no node is running, or none that this process can see"
     )
-    raise ToolError(f"there is no node {wanted!r}", advice)
+    raise Absent(f"there is no node {wanted!r}", advice)

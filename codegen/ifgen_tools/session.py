@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
 from ifgen_tools import discovery
-from ifgen_tools.errors import ToolError
+from ifgen_tools.errors import Absent, ToolError
+from ifgen_tools.lookout import Lookout
 
 if TYPE_CHECKING:
     from rclpy.context import Context
@@ -41,12 +42,6 @@ _PATIENCE: Final = 3.0
 """Seconds after which a graph is taken as it is: those of DDS may need them on a busy machine."""
 
 
-_ELSEWHERE: Final = (
-    "no node runs on the real rclpy. For programs on the local transport, add --transport local, or set "
-    "IFGEN_TRANSPORT=local"
-)
-
-
 @dataclass(frozen=True, slots=True)
 class Session:
     """A hidden node with its context and an executor that has this node.
@@ -58,6 +53,7 @@ class Session:
     context: Context
     node: Node
     executor: SingleThreadedExecutor
+    lookout: Lookout
 
     def wait_for(
         self, condition: Callable[[], bool], timeout: float | None = None, turn: float = _TURN
@@ -71,12 +67,13 @@ class Session:
             left = turn if end is None else min(turn, end - time.monotonic())
             if left <= 0:
                 return False
-            self.executor.spin_once(timeout_sec=left)
+            self.turn(left)
         return True
 
-    def turn(self) -> None:
+    def turn(self, seconds: float = _TURN) -> None:
         """Spin once, for a moment at most: without an end, real rclpy would not hear Ctrl-C."""
-        self.executor.spin_once(timeout_sec=_TURN)
+        self.executor.spin_once(timeout_sec=seconds)
+        self.lookout.look()
 
     def now(self) -> int:
         """The time of the node's clock [ns]; 0 while a simulated time has not come."""
@@ -94,6 +91,7 @@ class Session:
             self.wait_for(self._knows_everybody, _PATIENCE_LOCALLY, _LOOK)
         else:
             self._wait_for_quiet(until or self._is_in_company)
+        self.lookout.look_around()
 
     def _wait_for_quiet(self, enough: Callable[[], bool]) -> None:
         seen, started = self._graph(), time.monotonic()
@@ -101,7 +99,7 @@ class Session:
         while (now := time.monotonic()) - started < _PATIENCE:
             if now - since > _QUIET and enough():
                 return
-            self.executor.spin_once(timeout_sec=_LOOK)
+            self.turn(_LOOK)
             if (found := self._graph()) != seen:
                 seen, since = found, time.monotonic()
 
@@ -132,7 +130,8 @@ def open_session(
 
     `arguments` are those of rclpy.init, such as `["--ros-args", "-r", "..."]`. The node is called
     `_ifgen_PID` if it has no `name`. It has no services and no /rosout, and a name that begins with `_` hides
-    it from others. Raises ToolError if there is no such transport.
+    it from others. If nobody is here, its lookout says who is elsewhere. Raises ToolError if there is no such
+    transport.
     """
     chosen = activate(transport)
     if chosen == "rclpy":
@@ -166,12 +165,12 @@ def open_session(
 
             note = f"note: other processes are not reached without Zenoh. Install it: {add_runtime()}"
             print(note, file=sys.stderr)
-        yield Session(chosen, context, node, executor)
-    except ToolError as error:
-        if transport == "auto" and chosen == "rclpy" and len(node.get_node_names()) == 1:
-            help = f"{error.help}; " if error.help else ""
-            raise ToolError(error.message, help + _ELSEWHERE) from None
-        raise
+        lookout = Lookout(chosen, node)
+        try:
+            yield Session(chosen, context, node, executor, lookout)
+        except Absent as error:
+            raise ToolError(error.message, "; ".join(filter(None, (error.help, lookout.advice())))) from None
+        lookout.look_back()
     finally:
         executor.shutdown(timeout_sec=0)
         node.destroy_node()

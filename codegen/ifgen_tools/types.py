@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen_tools.errors import Absent, ToolError, did_you_mean
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -70,9 +70,7 @@ def topic_class(node: Node, topic: str, timeout: float = 5.0) -> type[Any]:
     names = list(dict.fromkeys(type_.name for type_ in types))
     if not names:
         known = sorted(name for name, _ in node.get_topic_names_and_types())
-        raise ToolError(
-            f"there is no topic {topic!r}", did_you_mean(topic, known) or "see `ifgen topic list`"
-        )
+        raise Absent(f"there is no topic {topic!r}", did_you_mean(topic, known) or "see `ifgen topic list`")
     if len(names) > 1:
         raise ToolError(
             f"the topic {topic!r} has more than one type: {', '.join(names)}", "name one after the topic"

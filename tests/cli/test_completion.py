@@ -52,6 +52,20 @@ def test_packages_and_their_programs(complete: Run) -> None:
     assert complete("test", "my_") == ["plain,my_pkg"]
 
 
+def test_the_users_files_and_packages_come_before_those_of_the_demo(complete: Run) -> None:
+    assert "plain,camera_driver" in complete("run", "cam")
+    assert "plain,camera_driver" in complete("test", "cam")
+    write(Path("camera.py"), "")
+    assert complete("run", "cam") == ["file,cam"]
+    for name in ("camera_calibration", "teleop"):
+        write(Path(f"src/{name}/package.xml"), f"<package format='3'><name>{name}</name></package>")
+        write(Path(f"src/{name}/setup.py"), "setup(entry_points={'console_scripts': ['a = b:c']})")
+    assert complete("run", "cam") == ["plain,camera.py", "plain,camera_calibration"]
+    assert complete("run", "./cam") == ["file,./cam"]
+    assert complete("test", "cam") == ["plain,camera_calibration"]
+    assert "plain,camera_driver" not in complete("test", "")
+
+
 def test_names_of_types(complete: Run, demo_msgs: Path) -> None:
     assert complete("show", "demo") == []
     write(Path("pyproject.toml"), '[tool.ifgen]\npaths = ["demo_msgs"]\n')

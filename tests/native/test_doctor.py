@@ -44,6 +44,7 @@ def test_where_all_is_well() -> None:
         "codec",
         "local transport",
         "other processes",
+        "nodes",
         "real rclpy",
         "middleware",
         "type support",

@@ -5,12 +5,12 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from ifgen.observing.definitions_seen import disagreements, users, without_hash
+from ifgen.observing.definitions_seen import disagreements, users, whole, without_hash
 
 A, B, NONE = "RIHS01_" + "a" * 64, "RIHS01_" + "b" * 64, "INVALID"
 
 
-def info(node: str, type_name: str, type_hash: str) -> Any:
+def info(node: str, type_name: str, type_hash: str, gid: int = 0) -> Any:
     namespace, _, name = node.rpartition("/")
     values = {"node_name": name, "node_namespace": namespace or "/", "topic_type": type_name}
     qos = SimpleNamespace(name="UNKNOWN")
@@ -20,7 +20,7 @@ def info(node: str, type_name: str, type_hash: str) -> Any:
         **dict.fromkeys(("deadline", "lifespan", "liveliness_lease_duration"), duration),
         depth=0,
     )
-    return SimpleNamespace(**values, topic_type_hash=type_hash, endpoint_gid=[], qos_profile=profile)
+    return SimpleNamespace(**values, topic_type_hash=type_hash, endpoint_gid=[gid], qos_profile=profile)
 
 
 class Graph:
@@ -133,3 +133,31 @@ def test_a_node_without_hashes_is_named_and_disagrees_with_nobody() -> None:
     graph = Graph({"/x": ends, "/y": ends})
     assert seen(graph) == []
     assert without_hash(users(graph)[1]) == ["/left/arm"]
+
+
+def test_whole_services_are_compared_where_a_part_is_unknown() -> None:
+    def ends(part: str, known: str) -> tuple[list[Any], list[Any]]:
+        name = f"a::srv::dds_::Set_{part}_"
+        return [info("/eye", name, known, 1)], [
+            info("/left/arm", name, NONE, 2),
+            info("/right/arm", name, NONE, 3),
+        ]
+
+    graph = Graph({}, {"rq/setRequest": ends("Request", A), "rr/setReply": ends("Response", B)})
+    _, same = users(graph, {(gid,): A for gid in (1, 2, 3)})
+    assert disagreements(same) == [] and without_hash(same) == []
+    _, differing = users(graph, {(1,): A, (2,): A, (3,): B})
+    (found,) = disagreements(differing)
+    assert {tuple(v): sorted({u.node for u in having}) for v, having in found.versions.items()} == {
+        ("a/srv/Set", A): ["/eye", "/left/arm"],
+        ("a/srv/Set", B): ["/right/arm"],
+    }
+    assert found.type_names == ["a/srv/Set"]
+    assert without_hash(users(graph)[1]) == ["/left/arm", "/right/arm"]
+    partial = {(gid,): A for gid in (1, 2)}  # the third one has just come
+    assert without_hash(users(graph, partial)[1]) == ["/left/arm", "/right/arm"]
+
+
+def test_a_part_of_an_action_without_request_or_response_belongs_to_it() -> None:
+    assert whole("a/action/Walk_SendGoal") == whole("a/action/Walk_GetResult_Response") == "a/action/Walk"
+    assert whole("a/srv/Set_Request") == "a/srv/Set"

@@ -100,12 +100,14 @@ def test_two_versions_meet(transport: str, project: Path, domain: dict[str, str]
     done = doctor(project, domain, *words)
     assert done.returncode == 1, done.stderr
     found = messages(done)
+    # Processes of the local transport announce whole services.
+    part = "robot_msgs/srv/SetMode" if transport == "local" else "robot_msgs/srv/SetMode_Request"
     assert sorted(found) == [
         "action '/walk' has 2 definitions of robot_msgs/action/Walk_FeedbackMessage",
         "robot_msgs/State.batteries.current is new",
         "robot_msgs/action/Walk_FeedbackMessage.feedback.battery.current is new",
         "robot_msgs/srv/SetMode_Request.mode was `uint8`, and is `uint16`",
-        "service '/set_mode' has 2 definitions of robot_msgs/srv/SetMode_Request",
+        f"service '/set_mode' has 2 definitions of {part}",
         "topic '/other' has 2 types",
         "topic '/state' has 2 definitions of robot_msgs/msg/State",
     ]
@@ -116,7 +118,7 @@ def test_two_versions_meet(transport: str, project: Path, domain: dict[str, str]
         "RIHS01_d87728b1c5cf0e7e...  /monitor (subscription)",
     ):
         assert f"\n  {line}" in state["message"]
-    (service,) = found["service '/set_mode' has 2 definitions of robot_msgs/srv/SetMode_Request"]
+    (service,) = found[f"service '/set_mode' has 2 definitions of {part}"]
     assert "/driver (service server)" in service["message"]
     assert "/monitor (service client)" in service["message"]
     (types,) = found["topic '/other' has 2 types"]
@@ -184,3 +186,27 @@ def test_wrong_usage(project: Path, domain: dict[str, str]) -> None:
     without = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert without.returncode == 2
     assert "these options need --graph" in without.stderr
+
+
+@pytest.mark.slow
+def test_healthy_nodes_of_other_processes_agree(
+    project: Path, domain: dict[str, str], tmp_path: Path
+) -> None:
+    """Their own definitions are unknown where the doctor looks, those of their parameters are known."""
+    command = [sys.executable, "-m", "ifgen", "run", "--transport", "local", str(PROGRAM)]
+    environment = {**os.environ, **domain}
+    started = [
+        subprocess.Popen([*command, name, "new"], cwd=project, env=environment)
+        for name in ("driver", "monitor")
+    ]
+    try:
+        found = ""
+        for _ in range(20):  # they come one after the other
+            found = doctor(tmp_path, domain, "--transport", "local").stdout
+            if found.startswith("2 nodes"):
+                break
+        assert found == "2 nodes: all definitions agree\n"
+    finally:
+        for each in started:
+            each.kill()
+            each.wait()

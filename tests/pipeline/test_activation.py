@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import os
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import ifgen
 import pytest
+from ifgen.running import overlays
 
 CODE = Path(ifgen.__file__).parent.parent
 ELSEWHERE = Path(Path.cwd().root)  # no project
@@ -189,6 +191,104 @@ def test_what_is_the_users_wins_over_our_examples(
         check=False,
     )
     assert (done.returncode, done.stdout) == (0, "3\n"), done.stderr
+
+
+def replacing(folder: Path, sources: Path, name: str, fields: str = "bool mine\n") -> None:
+    """A generated package, in a folder, that a ROS has with another definition."""
+    (sources / name / "msg").mkdir(parents=True)
+    (sources / name / "msg/Flag.msg").write_text(fields)
+    ifgen.generate(sources / name, output=folder)
+
+
+@pytest.fixture
+def fake_overlaid_ros(tmp_path: Path) -> Path:
+    """A ROS with an rclpy, a `flags` that nobody uses, and a `parts` that `whole` is compiled with."""
+    entry = tmp_path / "ros/lib/python3/site-packages"
+    for name, text in {
+        "rclpy": "",
+        "flags/msg": "",
+        "parts/msg": "",
+        "whole/msg": "from parts.msg import Flag\n",
+    }.items():
+        (entry / name).mkdir(parents=True)
+        (entry / name / "__init__.py").write_text(text)
+        (entry / name.partition("/")[0] / "__init__.py").touch()
+    return entry
+
+
+SLOW = [pytest.param(place, marks=pytest.mark.slow) for place in ("run beside", "PYTHONPATH", "run output")]
+PLACES = ["beside", "site-packages", "output", *SLOW]
+
+
+@pytest.mark.parametrize("transport", ["local", "rclpy"])
+@pytest.mark.parametrize("name", ["flags", "parts"])
+@pytest.mark.parametrize("place", PLACES)
+def test_the_users_definition_wins_over_that_of_ros_or_is_refused(
+    place: str, name: str, transport: str, fake_overlaid_ros: Path, tmp_path: Path
+) -> None:
+    ros, app = fake_overlaid_ros, tmp_path / "app"
+    folder = {"beside": app, "run beside": app, "output": app / "generated", "run output": app / "generated"}
+    own = folder.get(place, tmp_path / "lib")
+    replacing(own, tmp_path / "sources", name)
+    app.mkdir(exist_ok=True)
+    use = f"import {name}\nprint({name}.__file__)\n"
+    if not place.startswith("run"):
+        first = f"sys.path.append({str(own)!r})\n" if place == "site-packages" else ""
+        use = f"import sys, ifgen\n{first}ifgen.activate({transport!r})\n{use}"
+    (app / "main.py").write_text(use)
+    words = ["-m", "ifgen", "run", "--transport", transport] if place.startswith("run") else []
+    path = [CODE, *([own] if place == "PYTHONPATH" else []), ros]
+    done = subprocess.run(
+        [sys.executable, *words, "main.py"],
+        cwd=app,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    if transport == "rclpy" and name == "parts":
+        assert done.returncode and not done.stdout
+        said = " ".join(done.stderr.split())
+        assert f"'parts' in {own} has other definitions than the one of ROS in {ros}/parts" in said
+        assert "'whole' was compiled with: give your package another name, or use --transport local" in said
+    else:
+        assert (done.returncode, done.stdout) == (0, f"{own}/{name}/__init__.py\n"), done.stderr
+
+
+@pytest.mark.parametrize("transport", ["local", "rclpy"])
+def test_a_package_beside_the_program_wins_over_the_output_folder(
+    transport: str, fake_overlaid_ros: Path, tmp_path: Path
+) -> None:
+    replacing(tmp_path / "app", tmp_path / "sources", "mine")
+    replacing(tmp_path / "project/generated", tmp_path / "others", "mine")
+    main = tmp_path / "app/main.py"
+    main.write_text(f"import ifgen\nifgen.activate({transport!r})\nimport mine\nprint(mine.__file__)\n")
+    done = subprocess.run(
+        [sys.executable, str(main)],
+        cwd=tmp_path / "project",
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, [CODE, fake_overlaid_ros]))},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.stdout == f"{tmp_path}/app/mine/__init__.py\n", done.stderr
+
+
+def test_an_equal_package_leaves_those_of_ros_in_place(fake_overlaid_ros: Path, tmp_path: Path) -> None:
+    """ROS says by its shared files that it has the same definition."""
+    own = tmp_path / "app/generated"
+    replacing(own, tmp_path / "sources", "parts")
+    (known,) = (h for _, name, h in overlays._hashes(own / "parts") if name == "Flag")
+    share = tmp_path / "ros/share/parts/msg/Flag.json"
+    share.parent.mkdir(parents=True)
+    share.write_text(json.dumps({"type_hashes": [{"type_name": "parts/msg/Flag", "hash_string": known}]}))
+    real = [str(fake_overlaid_ros)]
+    assert overlays.path_on_ros(real, real, [str(own)], []) == [*real, str(own)]
+    replacing(own, tmp_path / "more", "flags")
+    with pytest.raises(overlays.OverlayError, match=r"replace those of ROS .flags., and a copy of 'parts'"):
+        overlays.path_on_ros(real, real, [str(own)], [])
 
 
 def test_nodes_of_our_demo_are_there_for_whoever_asks_for_the_demo() -> None:

@@ -7,6 +7,7 @@ can, and whatever is wrong is no completion.
 
 from __future__ import annotations
 
+import glob
 import os
 from collections.abc import Callable, Iterable, Iterator
 from functools import wraps
@@ -155,10 +156,17 @@ def files(_: click.Context, __: click.Parameter, typed: str) -> _Items:
 
 def programs(context: click.Context, parameter: click.Parameter, typed: str) -> _Items:
     """Files and packages, or the nodes of a package that is the word before, for `ifgen run`."""
+    from click.shell_completion import CompletionItem
+
     names = _programs(context, parameter, typed)
     if names and _present(context):
         return names
-    return [*files(context, parameter, typed), *names]
+    # bash completes files itself only where there is nothing else.
+    here = sorted(file.name for file in Path().glob(f"{glob.escape(typed)}*") if file.is_file())
+    if not here:
+        return [*files(context, parameter, typed), *names]
+    users = [name for name in names if name.value not in _names_of_demo()]
+    return [CompletionItem(name) for name in here] + users if users else files(context, parameter, typed)
 
 
 def _present(context: click.Context) -> list[str]:
@@ -176,16 +184,32 @@ def _programs(context: click.Context, typed: str) -> Iterable[str]:
 
     output, words = settle().output, _present(context)
     if not words:
-        begun = [name for name in finding.names(output) if name.startswith(typed)]
+        begun = _users_first(name for name in finding.names(output) if name.startswith(typed))
         return [name for name in begun if (found := finding.find(name, output)) and found.executables]
     package = finding.find(words[0], output) if len(words) == 1 and not Path(words[0]).exists() else None
     return sorted(package.executables) if package else ()
 
 
 @_completing
-def packages(_: click.Context, __: str) -> Iterable[str]:
+def packages(_: click.Context, typed: str) -> Iterable[str]:
     """Names of packages that are generated, sources here, or installed."""
     from ifgen.config.settings import settle
     from ifgen.running.finding import packages as finding
 
-    return finding.names(settle().output)
+    return _users_first(name for name in finding.names(settle().output) if name.startswith(typed))
+
+
+def _users_first(names: Iterable[str]) -> list[str]:
+    """The names of packages without those of our demo, unless there are no others."""
+    found = list(names)
+    return [name for name in found if name not in _names_of_demo()] or found
+
+
+def _names_of_demo() -> frozenset[str]:
+    from ifgen import resources
+    from ifgen.config.settings import settle
+
+    nodes = resources.bundled_nodes()
+    if not nodes.is_dir() or settle().output.resolve() == nodes.resolve():
+        return frozenset()
+    return frozenset(folder.name for folder in nodes.iterdir())

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Literal
 
 import click
+from click.core import ParameterSource
 
 from ifgen import resources
 from ifgen.cli import terminal
@@ -23,6 +24,7 @@ from ifgen.cli.arguments import format_ as format_option
 from ifgen.cli.arguments import include as include_option
 from ifgen.cli.running import other_processes
 from ifgen.config import installing
+from ifgen.running import elsewhere
 
 # Late imports: only `--graph` needs these.
 
@@ -68,6 +70,7 @@ _TESTED = _WITH_WHEELS  # the native tests run on the wheels
 @click.option(
     "--transport",
     type=click.Choice(["local", "rclpy", "auto"]),
+    envvar="IFGEN_TRANSPORT",
     help="With --graph: where to look, as for `ifgen graph`.",
 )
 @include_option
@@ -86,8 +89,10 @@ def doctor(
     """
     if graph:
         return _graph_doctor(programs, transport or "auto", include, format_)
-    if programs or transport or include or format_ != "text":
-        raise click.UsageError("These options need --graph", click.get_current_context())
+    context = click.get_current_context()
+    is_named = context.get_parameter_source("transport") is ParameterSource.COMMANDLINE
+    if programs or is_named or include or format_ != "text":
+        raise click.UsageError("These options need --graph", context)
     for finding in list(examine()):  # all at once: some take a while
         print(f"{finding.subject + ':':17}{finding.found}")
         if finding.advice:
@@ -133,6 +138,9 @@ def examine() -> Iterator[Finding]:
     yield _codec()
     yield Finding("local transport", "works anywhere: ifgen run --transport local PROGRAM")
     yield _other_processes()
+    yield Finding("nodes", elsewhere.everywhere() or "none of this user run on this machine now")
+    if reason := elsewhere.reason_against_domain("rclpy"):
+        yield Finding("ROS domain", reason)
     yield from _real_rclpy(system)
 
 
@@ -225,6 +233,7 @@ def _ask_real() -> list[str]:
     try:
         asked = subprocess.run(
             [sys.executable, "-c", _ASK_REAL],
+            env=elsewhere.usable_environment(),
             capture_output=True,
             text=True,
             timeout=_TIME_LIMIT,

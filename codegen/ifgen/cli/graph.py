@@ -47,6 +47,7 @@ _SUFFIXES: dict[str, Format] = {
 @click.option(
     "--transport",
     type=click.Choice(["local", "rclpy", "auto"]),
+    envvar="IFGEN_TRANSPORT",
     default="auto",
     help="Where to look: our rclpy (local), the real one (rclpy), or the real one if it is installed (auto).",
 )

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import redirect_stdout
 from importlib import import_module, invalidate_caches
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final, Literal, cast
 
 import click
+from click.core import ParameterSource
 
 from ifgen import resources
 from ifgen.cli import completion, further, terminal
@@ -68,7 +69,10 @@ def _told(error: click.ClickException) -> Iterator[str]:
     if near := getattr(error, "possibilities", None):
         message, meant = error.message, " or ".join(map(repr, near))
     message = " ".join(message.split()).rstrip(".")  # lists of choices have a line for each
-    yield f"error: {message[:1].lower()}{message[1:]}"
+    if isinstance(error, click.BadParameter) and (variable := _variable_of(error)):
+        message = f"the environment variable {variable} has an invalid value: {error.message.rstrip('.')}"
+    first = message[:1].lower() if message[1:2].islower() else message[:1]
+    yield f"error: {first}{message[1:]}"
     if isinstance(error, click.NoSuchOption):
         meant = meant or _CALLED_OTHERWISE.get(error.option_name, "")
     help = f"did you mean {meant.rstrip('?')}? " if meant else getattr(error, "help", "")
@@ -76,6 +80,15 @@ def _told(error: click.ClickException) -> Iterator[str]:
         help += f"see `{error.ctx.command_path} --help`"
     if help:
         yield f"  = help: {help}"
+
+
+def _variable_of(error: click.BadParameter) -> str:
+    """The environment variable that has a wrong value; empty if the value was on the command line."""
+    option, context = error.param, error.ctx
+    if option is None or context is None:
+        return ""
+    is_of_environment = context.get_parameter_source(option.name) is ParameterSource.ENVIRONMENT
+    return str(option.envvar) if is_of_environment else ""
 
 
 _CALLED_OTHERWISE: Final = {"--dry-run": "'--check'"}
@@ -247,6 +260,7 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     help="One virtual time for all programs: the same run every time (local transport).",
 )
 @click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
+@click.option("--of-launch", is_flag=True, hidden=True)  # which has said already who runs elsewhere
 @click.argument(
     "program",
     metavar="FILE|-m MODULE|PACKAGE NODE [ARGS]...",
@@ -258,19 +272,24 @@ def run(
     transport: Literal["local", "rclpy", "auto"],
     in_lockstep: bool,
     generate_first: bool,
+    of_launch: bool,
     program: tuple[str, ...],
 ) -> int:
     """Run programs written for rclpy, with `:` between them.
 
     Each runs in a process of its own. When the last one ends, the others are interrupted as by Ctrl-C. For
-    example: `ifgen run server.py : client.py 41 1`. All arguments after FILE or MODULE belong to the program,
-    including --ros-args.
+    example: `ifgen run server.py : client.py 41 1`. Arguments after FILE or MODULE belong to the program,
+    including --ros-args, except options of this command that the FILE does not mention.
 
     PACKAGE is a generated one, sources in this folder or in src, or one that is installed. A FILE of that
     name comes first.
     """
     from ifgen.running import run as running
 
+    is_part = of_launch or running.is_one_of_several()
+    words, late = _late_options(() if is_part else program)
+    transport = cast("Literal['local', 'rclpy', 'auto']", late.get("--transport", transport))
+    in_lockstep, generate_first = in_lockstep or "--lockstep" in late, generate_first or "--generate" in late
     settings = settle()
     if generate_first:
         from ifgen.cli import generate
@@ -279,8 +298,29 @@ def run(
             # stdout is the programs'
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
-    programs = running.split(program, settings.output)
-    return running.run(programs, transport, settings.output, in_lockstep=in_lockstep)
+    programs = running.split(program if is_part else words, settings.output)
+    return running.run(programs, transport, settings.output, in_lockstep=in_lockstep, tells=not is_part)
+
+
+def _late_options(program: Sequence[str]) -> tuple[Sequence[str], Mapping[str, str]]:
+    """Take options of `ifgen run` from the words after the first program, and say so."""
+    from ifgen.running import late_options
+
+    context = click.get_current_context()
+    options = {"--transport": "transport", "--lockstep": "in_lockstep", "--generate": "generate_first"}
+    given = [
+        option
+        for option, name in options.items()
+        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE
+    ]
+    words, late = late_options.take(program, given)
+    if late:
+        taken = " ".join(" ".join(filter(None, each)) for each in late.items())
+        print(
+            f"note: `ifgen run` takes {taken} as its own: the place of its options is before the program",
+            file=sys.stderr,
+        )
+    return words, late
 
 
 def _looked_at(findings: Findings) -> str:

@@ -59,7 +59,7 @@ def describe(
     """Write the description of a running node.
 
     NODE is its name, which you can leave out if there is only one. PROGRAM is run first, as by `ifgen run`,
-    with `:` between several programs. On the local transport you must name the PROGRAM.
+    with `:` between several programs.
     """
     from ifgen.observing import node_document, node_observation
     from ifgen.running import run

@@ -37,14 +37,20 @@ def main() -> None:
     rclpy.init(args=[])
     # Hidden, as the command line tools of ROS are.
     node = rclpy.create_node("_ifgen_definitions", start_parameter_services=False, enable_rosout=False)
-    # Somebody else's node may take a while to be discovered; on the local transport there are none.
+    # Somebody else's node may take a while to be discovered; the local transport is faster.
     is_real = find_spec("rmw_local") is None
     settled(rclpy, node, int(expected) or int(is_real))
-    nodes, found = users(node)
+    nodes, found = users(node, {} if is_real else _service_hashes(node))
     definitions = _definitions(node, disagreements(found))
     definitions_observation.write(Path(file), Seen(nodes, found, definitions))
     node.destroy_node()
     rclpy.try_shutdown()
+
+
+def _service_hashes(node: Any) -> dict[tuple[int, ...], str]:
+    with node.handle:
+        known: dict[tuple[int, ...], str] = import_module("rclpy.impl.rcl.graph").service_hashes(node.handle)
+    return known
 
 
 def _definitions(node: Any, found: Iterable[Disagreement]) -> dict[str, Definition]:

@@ -6,8 +6,9 @@ Nothing of rclpy is imported: a node is asked through its own methods.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any, Final, NamedTuple
 
 from ifgen.graph.model import Kind
@@ -16,7 +17,9 @@ from ifgen.observing.running_graph import endpoints, hidden, join
 _ACTION: Final = re.compile(r"(?P<name>/.+)/_action/\w+")
 _PART_OF_SERVICE: Final = re.compile(r"(?P<prefix>rq|rr)(?P<name>/.+)(?:Request|Reply)")
 _DDS_TYPE: Final = re.compile(r"(\w+)::(\w+)::dds_::(\w+)_")
-_PARTS: Final = re.compile(r"(_SendGoal|_GetResult)?_(Request|Response)$|_FeedbackMessage$")
+_PARTS: Final = re.compile(
+    r"(_SendGoal|_GetResult)?_(Request|Response)$|_(SendGoal|GetResult|FeedbackMessage)$"
+)
 _WITH_HASH: Final = "RIHS01_"
 
 
@@ -64,10 +67,15 @@ def whole(type_name: str) -> str:
     return type_name if "/msg/" in type_name else _PARTS.sub("", type_name)
 
 
-def users(node: Any) -> tuple[tuple[str, ...], tuple[User, ...]]:
-    """The other nodes, hidden ones left out, and what they use."""
+def users(
+    node: Any, service_hashes: Mapping[tuple[int, ...], str] = MappingProxyType({})
+) -> tuple[tuple[str, ...], tuple[User, ...]]:
+    """The other nodes, hidden ones left out, and what they use.
+
+    `service_hashes` are those of whole services by gid, for a middleware that may not tell those of parts.
+    """
     nodes, seen = endpoints(node)
-    found = [*_on_topics(node), *_of_services(node)]
+    found = [*_on_topics(node), *_of_services(node, service_hashes)]
     known = {(user.kind, user.name) for user in found}
     for endpoint in seen:  # where services are no topics, such as on rmw_zenoh
         kind = endpoint.category.folder
@@ -114,7 +122,22 @@ def _on_topics(node: Any) -> Iterator[User]:
             yield from (_user(info, role, kind, name, topic, info.topic_type) for info in infos)
 
 
-def _of_services(node: Any) -> Iterator[User]:
+def _of_services(node: Any, service_hashes: Mapping[tuple[int, ...], str]) -> Iterator[User]:
+    """The users of services by their parts; by whole services where somebody's parts have no hash."""
+    parts: dict[str, dict[User, str | None]] = {}
+    for service, user, gid in _of_parts(node):
+        parts.setdefault(service, {})[user] = service_hashes.get(gid)
+    for service, found in parts.items():
+        if all(user.type_hash for user in found) or not all(found.values()):
+            yield from found
+            continue
+        for user, type_hash in found.items():
+            type_name = user.type_name.removesuffix("_Request").removesuffix("_Response")
+            yield replace(user, channel=service, type_name=type_name, type_hash=type_hash)
+
+
+def _of_parts(node: Any) -> Iterator[tuple[str, User, tuple[int, ...]]]:
+    """Each user of requests or responses, after its service, and before its gid."""
     for channel, _ in node.get_topic_names_and_types(no_demangle=True):
         part = _PART_OF_SERVICE.fullmatch(channel)
         if part is None:
@@ -128,7 +151,9 @@ def _of_services(node: Any) -> Iterator[User]:
         roles = roles if part["prefix"] == "rq" else roles[::-1]
         for role, infos in zip(roles, _infos(node, channel, no_mangle=True), strict=True):
             for info in infos:
-                yield _user(info, role, kind, name, channel, _DDS_TYPE.sub(r"\1/\2/\3", info.topic_type))
+                type_name = _DDS_TYPE.sub(r"\1/\2/\3", info.topic_type)
+                user = _user(info, role, kind, name, channel, type_name)
+                yield part["name"], user, tuple(info.endpoint_gid)
 
 
 def _infos(node: Any, topic: str, *, no_mangle: bool) -> tuple[list[Any], list[Any]]:

@@ -29,7 +29,7 @@ def observe(
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "seen.json"
         with run.stdout_to_stderr():
-            code = run.run([*programs, observer(file)], transport, settle().output)
+            code = run.run([*programs, observer(file)], transport, settle().output, tells=not programs)
         seen = read(file)
     if seen is None:
         what = rule.removeprefix("no-")

@@ -18,6 +18,7 @@ from typing import Literal
 from ifgen import resources
 from ifgen.config import installing
 from ifgen.reading import manifest
+from ifgen.running import elsewhere, overlays
 
 Transport = Literal["local", "rclpy"]
 
@@ -26,8 +27,13 @@ class ActivationError(RuntimeError):
     """This process cannot use that transport; the text says why and what to do."""
 
 
-def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | None) -> Transport:
-    """Do what `ifgen.activate` does, for the packages in one folder, which may not exist."""
+def put_on_path(
+    transport: Literal["local", "rclpy", "auto"], generated: Path | None, beside: Iterable[str] = ()
+) -> Transport:
+    """Do what `ifgen.activate` does, for the packages in one folder, which may not exist.
+
+    `beside` are folders that programs will put before all others.
+    """
     if transport not in {"local", "rclpy", "auto"}:
         raise ValueError(f"transport must be 'local', 'rclpy' or 'auto', got {transport!r}")
     real = _real_path()
@@ -41,17 +47,21 @@ def put_on_path(transport: Literal["local", "rclpy", "auto"], generated: Path | 
             "there is no real rclpy to import: source /opt/ros/jazzy/setup.sh, "
             f"or run `{installing.add_extra('ros')}` (Linux x86_64)"
         )
+    if reason := elsewhere.reason_against_domain(chosen):
+        raise ActivationError(reason)
     _refuse_mixture(chosen, real)
     own, bundled = import_folders(generated) if generated else [], str(resources.bundled_generated())
     libraries = str(resources.libraries())
+    ros = [entry for entry in real if _has_ros(entry)]
     if chosen == "local":
         # The user's packages come before ours, except folders that contain a real ROS.
-        ros = {entry for entry in real if _has_ros(entry)}
         users = [entry for entry in real if entry not in ros]
-        last = [entry for entry in real if entry in ros]
-        path = [str(resources.underlay()), *own, *users, bundled, libraries, *last]
+        path = [str(resources.underlay()), *users, *own, bundled, libraries, *ros]
     else:
-        path = [*real, *own, bundled, libraries]
+        try:
+            path = [*overlays.path_on_ros(real, ros, own, beside), bundled, libraries]
+        except overlays.OverlayError as error:
+            raise ActivationError(str(error)) from None
     sys.path[:] = dict.fromkeys(_with_nodes_of_examples(path, chosen))
     return chosen
 

@@ -7,12 +7,19 @@ import sys
 import traceback
 from pathlib import Path
 from types import TracebackType
+from typing import Final
+
+from ifgen import resources
+from ifgen.reading import manifest
 
 INTERRUPTED = 130
 """The exit code that a shell reports for a program that Ctrl-C ended."""
 
 PATIENCE = 5.0
 """Seconds that interrupted programs have for ending, all at once."""
+
+_WITH_A_ROS: Final = ("cv_bridge", "image_geometry", "laser_geometry", "launch_testing", "rosbag2_py")
+"""Libraries of ROS that are compiled, or stand on such ones."""
 
 _HERE = Path(__file__).parent
 _IMPORTING = {importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
@@ -45,6 +52,8 @@ def tell(ending: BaseException) -> None:
         if ending.code is not None and not isinstance(ending.code, int):
             print(ending.code, file=sys.stderr)
         return
+    if isinstance(ending, ModuleNotFoundError) and (advice := _advice(ending)):
+        ending.add_note(advice)
     each: BaseException | None = ending
     while each is not None:
         each.__traceback__ = _without_ours(each.__traceback__)
@@ -55,6 +64,27 @@ def tell(ending: BaseException) -> None:
     else:
         # In one piece: another program may print as well.
         print("".join(traceback.format_exception(ending)), end="", file=sys.stderr, flush=True)
+
+
+def _advice(error: ModuleNotFoundError) -> str:
+    """Advice about a package that is not there: one spelled like it, or what to do without it."""
+    from difflib import get_close_matches  # only a mistake needs it
+
+    name = (error.name or "").partition(".")[0]
+    if name in _WITH_A_ROS:
+        return (
+            f"help: '{name}' comes with a ROS only: source one. docs/libraries.md lists what ifgen has; "
+            "docs/numpy.md has images as numpy arrays, docs/bags.md has bags"
+        )
+    folders = (Path(entry) for entry in dict.fromkeys(sys.path) if Path(entry).is_dir())
+    packages = {each.parent.name for folder in folders for each in folder.glob(f"*/{manifest.NAME}")}
+    libraries = {each.parent.name for each in resources.libraries().glob("*/__init__.py")}
+    near = get_close_matches(name, [*packages, *libraries, "rclpy"], n=1, cutoff=0.8)
+    if near:
+        return f"help: did you mean '{near[0]}'?" if near[0] != name else ""
+    if name.endswith(("_msgs", "_interfaces")):
+        return f"help: put the interfaces of '{name}' among those of your project, and run `ifgen generate`"
+    return ""
 
 
 def _without_ours(trace: TracebackType | None) -> TracebackType | None:

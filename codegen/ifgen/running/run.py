@@ -14,7 +14,7 @@ from typing import Literal
 
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.running import alone, lockstep, processes
+from ifgen.running import alone, elsewhere, lockstep, processes
 from ifgen.running.activation import ActivationError, folder_around, is_node_package, put_on_path
 from ifgen.running.ending import tell
 from ifgen.running.program import find
@@ -95,19 +95,20 @@ def run(
     generated: Path,
     *,
     in_lockstep: bool = False,
+    tells: bool = True,
 ) -> int:
     """Run programs, each in a process, until the last one ends; return the worst of their exit codes.
 
     `generated` is a folder with the user's own packages, unless a program is in another; it may be missing.
-    `in_lockstep`: with one virtual time for all. Raises UsageError where there is no such transport, or
-    program.
+    `in_lockstep`: with one virtual time for all. If nodes run on the other transport only, it `tells` so on
+    stderr. Raises UsageError where there is no such transport, or program.
     """
     if in_lockstep:
         transport = _transport_of_lockstep(transport)
-    files = (Path(words[0]) for words in command_lines if words[0] != "-m")
+    files = [Path(words[0]) for words in command_lines if words[0] != "-m"]
     own = next(filter(None, map(folder_around, files)), None)
     try:
-        chosen = put_on_path(transport, own or generated)
+        chosen = put_on_path(transport, own or generated, {str(file.resolve().parent) for file in files})
     except ActivationError as error:
         raise UsageError([Diagnostic("no-transport", str(error))]) from None
     try:
@@ -117,10 +118,17 @@ def run(
         return 1
     if in_lockstep:
         return lockstep.run(programs)
+    if tells:
+        elsewhere.tell(chosen)
     if len(programs) == 1:
         return alone.run(programs[0])
     named = [(program.name, words) for program, words in zip(programs, command_lines, strict=True)]
     return processes.run(named, chosen)
+
+
+def is_one_of_several() -> bool:
+    """Whether this process is one of those that `run` has started, which has read the options and told."""
+    return processes.NOTE in os.environ
 
 
 def _transport_of_lockstep(asked: str) -> Literal["local"]:

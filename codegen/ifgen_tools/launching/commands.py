@@ -82,6 +82,7 @@ def launch(
     else the highest exit code of a process that died by itself.
     """
     from ifgen.config.settings import settle
+    from ifgen.running import elsewhere
 
     paths, given = _split(words)
     output = settle().output
@@ -117,6 +118,7 @@ def launch(
     for name, _ in arguments:
         if remark := _unknown(name, description, path, host):
             print(f"warning: {remark}", file=sys.stderr, flush=True)
+    elsewhere.tell(chosen)
     return host.run(include)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from collections.abc import Callable
 from dataclasses import asdict
 from functools import partial
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ifgen_tools.errors import ToolError
 from ifgen_tools.named import Named
 from ifgen_tools.names import is_hidden
-from ifgen_tools.nodes import find_node, node_names
+from ifgen_tools.nodes import find_node
 from ifgen_tools.session import open_session
 
 if TYPE_CHECKING:
@@ -36,14 +35,7 @@ def node_info(
     with open_session(transport, use_sim_time=use_sim_time) as session:
         session.discover(spin_time)
         wanted = find_node(session, node_name, spin_time)
-        number = node_names(session.node, True).count(wanted)
         found = _all_of(session.node, wanted, include_hidden)
-    if number > 1:
-        print(
-            f"warning: {number} nodes are called {wanted}: what they have is shown together, or that of one "
-            "of them only",
-            file=sys.stderr,
-        )
     if as_json:
         lists = {role.lower().replace(" ", "_"): [asdict(each) for each in of] for role, of in found.items()}
         print(json.dumps({"name": wanted, **lists}, indent=2))

@@ -37,6 +37,10 @@ def run(
     from ifgen_tools.top.gathering import Gatherer
 
     with open_session(transport) as session:
+        is_screen = not (web or as_json or once) and _has_terminal()
+        notes: list[str] = []
+        if is_screen:
+            session.lookout.say = notes.append
         gatherer = Gatherer(session, include_hidden=include_hidden, listens=not no_subscribe)
         session.discover()
         if web:
@@ -45,11 +49,11 @@ def run(
             return _until_interrupted(lambda: serve(gatherer, port, period))
         if as_json:
             return _print_json(gatherer, period, once=once)
-        if once or not _has_terminal():
+        if not is_screen:
             return _print_tables(gatherer, period)
         from ifgen_tools.top.screen.live import watch
 
-        return _until_interrupted(lambda: watch(gatherer, period, view))
+        return _until_interrupted(lambda: watch(gatherer, period, view, notes))
 
 
 def _until_interrupted(show: Callable[[], None]) -> int:

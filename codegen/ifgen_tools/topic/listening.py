@@ -87,6 +87,7 @@ def wait_for_topic(session: Session, topic: str) -> type[Any]:
     """
     if not topic_types(session.node, topic):
         print(f"WARNING: topic [{topic}] does not appear to be published yet", file=sys.stderr, flush=True)
+        session.lookout.tell_of_other()
         session.wait_for(lambda: bool(topic_types(session.node, topic)))
     published = {info.topic_type for info in session.node.get_publishers_info_by_topic(topic)}
     types = topic_types(session.node, topic)
@@ -134,6 +135,8 @@ def listen(
     except UnsupportedEventTypeError:  # this middleware does not tell
         subscribe(cls, topic, hear, profile, raw=raw)
     _watch_types(session, topic, type_name(cls))
+    if not session.node.count_publishers(topic):
+        session.lookout.tell_of_other()
 
 
 def _watch_types(session: Session, topic: str, name: str) -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen_tools.errors import Absent, did_you_mean
 from ifgen_tools.names import full_name, is_hidden
 from ifgen_tools.session import open_session
 from ifgen_tools.topic import listening
@@ -165,5 +165,5 @@ def _types(node: Node, topic: str) -> list[str]:
     known = dict(node.get_topic_names_and_types())
     if topic not in known:
         help = did_you_mean(topic, sorted(known)) or "see `ifgen topic list`"
-        raise ToolError(f"there is no topic {topic!r}", help)
+        raise Absent(f"there is no topic {topic!r}", help)
     return list(known[topic])

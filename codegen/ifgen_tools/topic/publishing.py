@@ -125,6 +125,7 @@ def _wait_for_subscriptions(session: Session, publisher: Publisher[Any], plan: P
     enough: Callable[[], bool] = lambda: publisher.get_subscription_count() >= wanted  # noqa: E731
     while not enough():
         print(f"Waiting for at least {wanted} matching subscription(s)...", flush=True)
+        session.lookout.tell_of_other()
         left = _EVERY if plan.patience is None else min(_EVERY, plan.patience - waited)
         if session.wait_for(enough, left):
             return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property, partial
+from importlib import import_module
 from typing import Any
 
 from ifgen_runtime.codec import deserialize, serialize
@@ -24,6 +25,7 @@ __all__ = [
     "is_service_class",
     "message_type",
     "service_type",
+    "service_with_hash",
     "type_name",
 ]
 
@@ -121,6 +123,18 @@ def service_type(cls: type[Any]) -> ServiceType:
     if known is None:
         known = _SERVICES.setdefault(cls, ServiceType(cls))
     return known
+
+
+def service_with_hash(name: str, type_hash: str) -> ServiceType | None:
+    """Return a service, or one of an action, if this process can import the definition with this hash."""
+    package, kind, short = name.split("/")
+    action, _, part = short.rpartition("_") if kind == "action" else (short, "", "")
+    try:
+        cls = getattr(import_module(f"{package}.{kind}"), action)
+        cls = getattr(cls.Impl, f"{part}Service") if part else cls
+    except (ImportError, AttributeError):
+        return None
+    return service_type(cls) if getattr(cls, "__type_hash__", "") == type_hash else None
 
 
 def is_message_class(cls: object) -> bool:

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from ifgen_runtime import neighbours
 from rmw_local.transports import doorbell
 from rmw_local.transports.doorbell import Doorbell
 from rmw_local.transports.errors import TransportError
@@ -60,6 +61,36 @@ def test_processes_hear_each_other_and_leave_nothing(base: Path) -> None:
     assert not Doorbell(8).ring()
     assert list((base / "7").iterdir()) == []
     assert base.stat().st_mode & 0o777 == 0o700
+
+
+def test_who_counts_nodes_is_answered_for_each_domain(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(neighbours, "FOLDER", base.parent)
+    assert neighbours.on_local() == {}
+    bells = {Doorbell(7): 2, Doorbell(7): 0, Doorbell(8): 1}
+    threads = [
+        threading.Thread(target=b.listen, args=(lambda: None, lambda n=n: n)) for b, n in bells.items()
+    ]
+    for thread in threads:
+        thread.start()
+    (base / "7" / "1-0.bell").touch()  # no socket
+    found = {domain: (nodes.number, nodes.is_least) for domain, nodes in neighbours.on_local().items()}
+    assert found == {7: (2, False), 8: (1, False)}
+    assert list(neighbours.on_local(8)) == [8]
+    assert not list(base.glob("*.asks"))
+    for bell in bells:
+        bell.close()
+    for thread in threads:
+        thread.join(10)
+
+
+def test_whoever_is_too_busy_to_answer_counts_as_one_node_at_least(
+    base: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(neighbours, "FOLDER", base.parent)
+    monkeypatch.setattr(neighbours, "LIMIT", 0.01)
+    bell = Doorbell(7)
+    assert str(neighbours.on_local()[7]) == "at least 1 node runs"
+    bell.close()
 
 
 def test_a_mask_does_not_open_the_folder_to_others(base: Path) -> None:

@@ -6,6 +6,8 @@ import json
 import subprocess
 import sys
 
+from ifgen.running import elsewhere
+
 _TIME_LIMIT = 30.0  # [s]
 _PREFIX = "rmw_local: "
 
@@ -22,7 +24,7 @@ if range_is_off():
     print(json.dumps(None))
     sys.exit()
 rclpy.init(args=[])
-node = rclpy.create_node("ifgen_doctor", start_parameter_services=False, enable_rosout=False)
+node = rclpy.create_node("_ifgen_doctor", start_parameter_services=False, enable_rosout=False)
 time.sleep(0.5)  # for those that answer
 reach = read({name: value for name, value in os.environ.items() if name != "ZENOH_CONFIG_OVERRIDE"})
 where = "of this user on this machine" if IS_POSSIBLE else "in this process: there are no Unix sockets here"
@@ -40,7 +42,12 @@ def look() -> tuple[str, str | None]:
     """Say which processes are reached and how many nodes are there, and why that is not more."""
     try:
         asked = subprocess.run(
-            [sys.executable, "-c", _LOOK], capture_output=True, text=True, timeout=_TIME_LIMIT, check=False
+            [sys.executable, "-c", _LOOK],
+            env=elsewhere.usable_environment(),
+            capture_output=True,
+            text=True,
+            timeout=_TIME_LIMIT,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return "not reached", f"a node that looks for others was not made within {_TIME_LIMIT:.0f} s"

@@ -31,6 +31,7 @@ _FOLDERS: Final = ("test", "tests")
     "--transport",
     type=click.Choice(["local", "rclpy", "auto", "both"]),
     default="auto",
+    envvar="IFGEN_TRANSPORT",
     help="Our rclpy (local), the real one (rclpy), the real one if it is installed (auto), or both in turn.",
 )
 @click.argument("package", shell_complete=completion.packages)

@@ -218,7 +218,7 @@ class _Playing:
         due.publish(due.data)
 
     def _wait(self, seconds: float) -> None:
-        self._session.executor.spin_once(timeout_sec=seconds)
+        self._session.turn(seconds)
         self._keyboard.look()
 
     def _wait_for_acknowledgements(self) -> None:

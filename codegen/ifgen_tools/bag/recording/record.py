@@ -122,7 +122,7 @@ class Recording:
                 if command.has_discovery:
                     self._look_again(self._session.node, command.interval)
                 while self._session.context.ok() and not stop.number and not is_done(self):
-                    self._session.executor.spin_once(timeout_sec=_LOOK)
+                    self._session.turn(_LOOK)
                     keys.look()
                 if stop.number:
                     self._take_what_came()

@@ -268,7 +268,7 @@ class LaunchHost:
     def _command(self, found: packages.Executable) -> list[str]:
         if not found.is_python:
             return list(found.words)
-        return [*RUN, "--transport", self.transport, *found.words]
+        return [*RUN, "--of-launch", "--transport", self.transport, *found.words]
 
     def parameter_file(self, parameters: Mapping[str, Any], node: str) -> str:
         """Write parameters of a node to a file that is there as long as the launch is."""

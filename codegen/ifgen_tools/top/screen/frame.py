@@ -92,6 +92,8 @@ def _lines(snapshot: Snapshot | None, view: View, width: int) -> Iterator[Text]:
         yield Text(
             f"nothing has {view.filter!r} in it" if view.filter else _why_empty(snapshot, view.table_name)
         )
+    if not snapshot.nodes:
+        yield from map(Text, view.notes)
 
 
 def _title(snapshot: Snapshot | None, width: int) -> Text:

@@ -65,9 +65,9 @@ class Gathering:
             left -= _TURN
 
 
-def watch(gatherer: Gatherer, period: float, table: str) -> None:
-    """Show the view until somebody quits."""
-    view = View(table)
+def watch(gatherer: Gatherer, period: float, table: str, notes: list[str]) -> None:
+    """Show the view until somebody quits; `notes`, which may come later, as long as there are no nodes."""
+    view = View(table, notes=notes)
     with taken() as terminal:
         gathering = Gathering(gatherer, period, terminal.wake)
         try:

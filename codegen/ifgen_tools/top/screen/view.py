@@ -47,6 +47,8 @@ class View:
     """Those that have been read; None while they are awaited."""
     scrolled: int = 0
     """The first parameter on the screen."""
+    notes: list[str] = field(default_factory=list[str])
+    """What is shown as long as there are no nodes."""
     places: dict[str, Place] = field(default_factory=lambda: {name: Place() for name in TABLES})
 
     @property

@@ -17,22 +17,23 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
+from ifgen_runtime.neighbours import BELL, COUNT, FOLDER
+
 from rmw_local.transports.errors import TransportError
 from rmw_local.transports.own_folder import own_folder
 
 IS_POSSIBLE: Final = hasattr(_socket, "AF_UNIX") and hasattr(os, "getuid")
 """Whether the system has such sockets; Python on Windows has none."""
 
-BELL: Final = ".bell"
 CLOCK: Final = ".clock"
-"""The endings of sockets: of processes that can be reached, and of those with a clock of their own."""
+"""The ending of sockets of processes with a clock of their own; those of the others end in BELL."""
 
 _DOOR: Final = ".zenoh"
 _RING: Final = b"r"
 _NAME: Final = re.compile(r"\d{1,10}-\d{1,3}", re.ASCII)  # process id, and a number
 # The same for all terminals and services of a user, unlike $TMPDIR and $XDG_RUNTIME_DIR. Services of the
 # system, cron and `su` have no XDG_RUNTIME_DIR, and the last logout removes it, whatever still runs.
-_TEMPORARY: Final = Path("/tmp")
+_TEMPORARY: Final = FOLDER
 
 
 class Doorbell:
@@ -63,17 +64,20 @@ class Doorbell:
             _is_held(self._folder / f"{name}{ending}") for ending in endings for name in self._names(ending)
         )
 
-    def listen(self, rung: Callable[[], None]) -> None:
-        """Call `rung` whenever another process comes, until the bell is closed."""
+    def listen(self, rung: Callable[[], None], count_nodes: Callable[[], int] = lambda: 0) -> None:
+        """Call `rung` whenever another process comes, and answer whoever counts nodes, until it is closed."""
         while True:
             try:
-                received = self._socket.recv(len(_RING) + 1)
+                received, address = self._socket.recvfrom(len(_RING) + 1)
             except OSError:
                 return
             if self._is_closed:
                 return
-            if received == _RING:  # whatever else comes is not ours
+            if received == _RING:  # what is neither this nor COUNT is not ours
                 rung()
+            elif received == COUNT:
+                with suppress(OSError):
+                    self._socket.sendto(b"%d" % count_nodes(), _socket.MSG_DONTWAIT, address)
 
     def close(self) -> None:
         """Remove it. Who listens returns."""

@@ -14,9 +14,11 @@ import time
 from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar, Final
 
+from ifgen_runtime.neighbours import BELL
+
 from rmw_local.domain import forget_domains
 from rmw_local.notices import say
-from rmw_local.transports.doorbell import BELL, CLOCK, IS_POSSIBLE, Doorbell
+from rmw_local.transports.doorbell import CLOCK, IS_POSSIBLE, Doorbell
 from rmw_local.transports.errors import ConfigurationError, TransportError
 
 if TYPE_CHECKING:
@@ -153,7 +155,7 @@ class Reach:
     def _listen(self) -> None:
         bell = self._bell
         if bell is not None:
-            bell.listen(self._open)
+            bell.listen(self._open, lambda: _count_nodes(self._domain))
 
     def _open(self) -> None:
         """Open the session, once."""
@@ -260,6 +262,12 @@ def _environment() -> Environment | None:
 
     settings = environment.read()
     return settings if settings.reaches_further else None
+
+
+def _count_nodes(domain: Domain) -> int:
+    """Count the nodes of this process in a domain, except hidden ones."""
+    with domain.lock:
+        return sum(not node.is_remote and "/_" not in node.full_name for node in domain.nodes)
 
 
 def _unmatched(domain: Domain) -> str:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from rmw_local.domain import Domain
 from rmw_local.endpoint import Endpoint
-from rmw_local.message import MessageType
+from rmw_local.message import MessageType, service_with_hash
 from rmw_local.qos import HISTORY_UNKNOWN, QosProfile
 from rmw_local.service import ServiceEndpoint
 
@@ -215,18 +215,40 @@ def _dds_senders(graph: _Snapshot) -> Iterator[_End]:
     for writer in graph.writers:
         yield from (_End(*pair, writer, writer.message_type, writer.qos) for pair in _dds_topics([writer]))
     for client in graph.clients:
-        yield from (_End(*pair, client, client.sends, client.qos.writer) for pair in _dds_requests([client]))
+        yield from (
+            _End(*pair, client, _part(client, client.sends), client.qos.writer)
+            for pair in _dds_requests([client])
+        )
     for server in graph.servers:
-        yield from (_End(*pair, server, server.sends, server.qos.writer) for pair in _dds_replies([server]))
+        yield from (
+            _End(*pair, server, _part(server, server.sends), server.qos.writer)
+            for pair in _dds_replies([server])
+        )
 
 
 def _dds_takers(graph: _Snapshot) -> Iterator[_End]:
     for reader in graph.readers:
         yield from (_End(*pair, reader, reader.message_type, reader.qos) for pair in _dds_topics([reader]))
     for server in graph.servers:
-        yield from (_End(*pair, server, server.takes, server.qos.reader) for pair in _dds_requests([server]))
+        yield from (
+            _End(*pair, server, _part(server, server.takes), server.qos.reader)
+            for pair in _dds_requests([server])
+        )
     for client in graph.clients:
-        yield from (_End(*pair, client, client.takes, client.qos.reader) for pair in _dds_replies([client]))
+        yield from (
+            _End(*pair, client, _part(client, client.takes), client.qos.reader)
+            for pair in _dds_replies([client])
+        )
+
+
+def _part(endpoint: ServiceEndpoint, kind: MessageType) -> MessageType:
+    """The type of requests or responses with its hash: other processes announce the service's hash only."""
+    if kind.type_hash:
+        return kind
+    known = service_with_hash(endpoint.service_type.name, endpoint.service_type.type_hash)
+    if known is None:
+        return kind
+    return known.request if kind.name == known.request.name else known.response
 
 
 def _info(end: _End, endpoint_type: int) -> dict[str, Any]:
@@ -261,6 +283,12 @@ def service_types(node: Node, service_name: str) -> list[tuple[str, str, str]]:
         for server in graph.servers
         if server.name == service_name
     ]
+
+
+def service_hashes(node: Node) -> dict[tuple[int, ...], str]:
+    """Return the type hash of the whole service for each server and client by gid."""
+    graph = _Snapshot(node, "Failed to get information about services")
+    return {tuple(each.gid): each.service_type.type_hash for each in (*graph.servers, *graph.clients)}
 
 
 def node_names(node: Node) -> list[tuple[str, str, str]]:

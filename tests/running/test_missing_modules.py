@@ -1,0 +1,40 @@
+"""Advice about modules that a program imports in vain."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from ifgen import resources
+from ifgen.running.ending import tell
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        ("nav_msg.msg", "help: did you mean 'nav_msgs'?"),
+        ("sensor_mgs", "help: did you mean 'sensor_msgs'?"),
+        ("tf2_roos", "help: did you mean 'tf2_ros'?"),
+        ("rclpyy", "help: did you mean 'rclpy'?"),
+        ("my_robt_msgs.msg", "help: did you mean 'my_robot_msgs'?"),
+        ("cv_bridge", "help: 'cv_bridge' comes with a ROS only: source one."),
+        ("moveit_msgs.msg", "help: put the interfaces of 'moveit_msgs' among those of your project"),
+        ("numpyy", ""),
+        ("nav_msgs.mgs", ""),
+    ],
+)
+def test_advice(
+    name: str,
+    advice: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "my_robot_msgs").mkdir()
+    (tmp_path / "my_robot_msgs/.ifgen-manifest.json").touch()
+    monkeypatch.syspath_prepend(str(resources.bundled_generated()))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    tell(ModuleNotFoundError(f"No module named {name!r}", name=name))
+    said = capsys.readouterr().err.splitlines()
+    assert said[0] == f"ModuleNotFoundError: No module named {name!r}"
+    assert said[1:] == [] if not advice else said[1].startswith(advice)
