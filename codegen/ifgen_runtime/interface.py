@@ -4,6 +4,7 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from typing import Any, ClassVar, Generic, Protocol, Self, TypeVar
 
     RequestT = TypeVar("RequestT")
@@ -34,6 +35,12 @@ class InterfaceMeta(type):
         import_type_support(mcs._interface)
 
 
+def keep_annotations(cls: type, names: Collection[str]) -> None:
+    """Drop the other annotations. Type checkers alone know their names; `get_type_hints` would raise."""
+    annotations: dict[str, Any] = vars(cls).get("__annotations__", {})
+    cls.__annotations__ = {name: text for name, text in annotations.items() if name in names}
+
+
 class ServiceMeta(InterfaceMeta):
     """The metaclass of services and actions, which are never instantiated."""
 
@@ -42,6 +49,9 @@ class ServiceMeta(InterfaceMeta):
         cls = super().__new__(mcs, name, bases, namespace)
         if "__type_hash__" in namespace:
             mcs._interface = cls
+            for holder in (cls, namespace.get("Impl")):
+                if holder:
+                    keep_annotations(holder, ())
         return cls
 
 
