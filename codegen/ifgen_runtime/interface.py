@@ -36,7 +36,10 @@ class InterfaceMeta(type):
 
 
 def keep_annotations(cls: type, names: Collection[str]) -> None:
-    """Drop the other annotations. Type checkers alone know their names; `get_type_hints` would raise."""
+    """Drop the other annotations. Type checkers alone know their names; `get_type_hints` would raise.
+
+    A class without annotations would show those of its metaclass.
+    """
     annotations: dict[str, Any] = vars(cls).get("__annotations__", {})
     cls.__annotations__ = {name: text for name, text in annotations.items() if name in names}
 
@@ -49,9 +52,10 @@ class ServiceMeta(InterfaceMeta):
         cls = super().__new__(mcs, name, bases, namespace)
         if "__type_hash__" in namespace:
             mcs._interface = cls
-            for holder in (cls, namespace.get("Impl")):
-                if holder:
-                    keep_annotations(holder, ())
+        if "__type_hash__" in namespace or not bases:
+            keep_annotations(cls, ())
+            if "Impl" in namespace:
+                keep_annotations(namespace["Impl"], ())
         return cls
 
 
