@@ -20,6 +20,7 @@ from ifgen.definition.interfaces import (
     Registry,
 )
 from ifgen.definition.problems import FileProblems, one_for_each_cause
+from ifgen.definition.sizes import check_totals
 from ifgen.definition.types import NamespacedType
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source
 from ifgen.reading import storage
@@ -119,6 +120,8 @@ class _Resolver:
             found += (*problems.errors(), *problems.warnings())
         errors = [diagnostic for diagnostic in found if diagnostic.severity == "error"]
         errors += check_cycles(self._messages)
+        if not errors:
+            errors += check_totals(self._messages)
         return one_for_each_cause(errors), [d for d in found if d.severity == "warning"]
 
     def broken(self, errors: Iterable[Diagnostic]) -> frozenset[str]:

@@ -103,7 +103,7 @@ class _Making:
 
 
 def _resolve_hints(module: dict[str, Any]) -> None:
-    """Put classes in the place of names in annotations: nobody finds these names, as no import finds the module."""
+    """Put classes in the place of names in annotations: no import finds the module that has these names."""
     for cls in module.values():
         if "__type_hash__" in getattr(cls, "__dict__", ()) and cls.__module__ == module["__name__"]:
             cls.__annotations__ = get_type_hints(cls, module)
