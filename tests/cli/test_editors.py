@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import tomllib
@@ -125,3 +126,16 @@ def test_pyright_has_nothing_to_say_of_a_program_that_runs(ifgen: Run) -> None:
     command = [sys.executable, "-m", "pyright", "--outputjson", "--pythonpath", sys.executable, "program.py"]
     checked = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
     assert json.loads(checked.stdout)["generalDiagnostics"] == []
+
+
+@pytest.mark.slow
+def test_tools_that_import_find_everything_by_the_ways_of_the_page(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", demo_msgs)
+    ifgen("typings")
+    shown = ifgen("run", "--transport", "local", "-m", "pydoc", "demo_msgs.msg").out
+    assert "Help on package demo_msgs.msg" in shown
+    folders = ifgen("paths", "--typings", "none").out.splitlines()
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(folders)}
+    command = [sys.executable, "-c", "import demo_msgs.msg, rclpy.node, tf2_ros; print(rclpy.node.__file__)"]
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert Path(ran.stdout.strip()).parent.parent == resources.underlay(), ran.stderr
