@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TypeAlias, cast
 
 from ifgen.definition import build, dependencies, derive, files, names, package_names, references
-from ifgen.definition.cycles import check_cycles
+from ifgen.definition.impossible import check_cycles, check_totals
 from ifgen.definition.interfaces import (
     Action,
     Field,
@@ -20,7 +20,6 @@ from ifgen.definition.interfaces import (
     Registry,
 )
 from ifgen.definition.problems import FileProblems, one_for_each_cause
-from ifgen.definition.sizes import check_totals
 from ifgen.definition.types import NamespacedType
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source
 from ifgen.reading import storage

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from typing import Final
 
 from ifgen.definition.described.types import BadDescription
+from ifgen.definition.impossible import needed_first, value_count
 from ifgen.definition.interfaces import Message
 from ifgen.definition.references import references
-from ifgen.definition.sizes import needed_first, value_count
 
 _DEEPEST: Final = 64
 """Levels of nesting: the deepest interface of ROS has 7."""

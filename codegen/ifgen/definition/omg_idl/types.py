@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
+from ifgen.definition.impossible import check_sizes
 from ifgen.definition.omg_idl import explain_types as explain
 from ifgen.definition.omg_idl.values import size_of
 from ifgen.definition.problems import FileProblems
-from ifgen.definition.sizes import check_sizes
 from ifgen.definition.types import (
     Array,
     BasicType,

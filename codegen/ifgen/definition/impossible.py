@@ -1,13 +1,13 @@
-"""The limits that the wire sets to sizes and bounds, and to the number of values in a message."""
+"""Types that no code can hold: messages that contain themselves, and sizes that the wire has no numbers for."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from ifgen.definition.interfaces import Message
+from ifgen.definition.interfaces import Field, Message
 from ifgen.definition.problems import FileProblems
-from ifgen.definition.references import references
+from ifgen.definition.references import references, type_span
 from ifgen.definition.types import (
     Array,
     BoundedSequence,
@@ -19,8 +19,64 @@ from ifgen.definition.types import (
 )
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
 
+_MAX_LINKS = 10
 LARGEST_SIZE: Final = 2**32 - 1
 """A length on the wire has 32 bits: that of a sequence or a text, and that of a message in bytes."""
+
+
+def check_cycles(messages: Mapping[str, Message]) -> list[Diagnostic]:
+    """One finding for each circle of messages that a walk over all of them runs into."""
+    found: list[Diagnostic] = []
+    done: set[str] = set()
+    for root in messages:
+        if root not in done:
+            found.extend(_describe(cycle) for cycle in _cycles_from(root, messages, done))
+    return found
+
+
+def _cycles_from(
+    root: str, messages: Mapping[str, Message], done: set[str]
+) -> Iterator[list[tuple[Message, Field]]]:
+    """Walk depth first, on a stack of our own since chains may be long; yield the links of each circle."""
+    path: list[tuple[Message, Field]] = []
+    depth = {root: 0}
+    pending = [(messages[root], references(messages[root]))]
+    while pending:
+        message, remaining = pending[-1]
+        field, type_ = next(remaining, (None, None))
+        if field is None or type_ is None:
+            pending.pop()
+            done.add(message.type_name)
+            del depth[message.type_name]
+            if path:
+                path.pop()
+            continue
+        name = type_.type_name
+        if name in depth:
+            yield [*path[depth[name] :], (message, field)]
+        elif name not in done and name in messages:
+            depth[name] = len(pending)
+            path.append((message, field))
+            pending.append((messages[name], references(messages[name])))
+
+
+def _describe(links: list[tuple[Message, Field]]) -> Diagnostic:
+    first, *others = links
+    labels = [_label(message, field) for message, field in (first, *others[: _MAX_LINKS - 1])]
+    known = [label for label in labels if label is not None]
+    circle = " -> ".join(message.type_name for message, _ in [*links[:_MAX_LINKS], first])
+    return Diagnostic(
+        "recursive-type",
+        f"{first[0].type_name} contains itself",
+        known[0] if known else None,
+        tuple(known[1:]),
+        f"the cycle is {circle}; messages cannot be recursive, not even through a sequence",
+    )
+
+
+def _label(message: Message, field: Field) -> Label | None:
+    span = type_span(field)
+    return Label(span, f"{message.type_name} holds this") if span else None
 
 
 def check_sizes(type_: FieldType, span: Span, problems: FileProblems) -> None:
