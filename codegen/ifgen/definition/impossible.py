@@ -1,4 +1,4 @@
-"""Types that no code can hold: messages that contain themselves, and sizes that the wire has no numbers for."""
+"""Types that no code can hold: messages that contain themselves, and sizes beyond the numbers of the wire."""
 
 from __future__ import annotations
 
