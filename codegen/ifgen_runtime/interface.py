@@ -35,13 +35,13 @@ class InterfaceMeta(type):
         import_type_support(mcs._interface)
 
 
-def keep_annotations(cls: type, names: Collection[str]) -> None:
+def keep_annotations(namespace: dict[str, Any], names: Collection[str]) -> None:
     """Drop the other annotations. Type checkers alone know their names; `get_type_hints` would raise.
 
     A class without annotations would show those of its metaclass.
     """
-    annotations: dict[str, Any] = vars(cls).get("__annotations__", {})
-    cls.__annotations__ = {name: text for name, text in annotations.items() if name in names}
+    annotations: dict[str, str] = namespace.get("__annotations__", {})
+    namespace["__annotations__"] = {name: annotations[name] for name in names if name in annotations}
 
 
 class ServiceMeta(InterfaceMeta):
@@ -49,13 +49,14 @@ class ServiceMeta(InterfaceMeta):
 
     def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> ServiceMeta:
         """Remember the generated class; classes derived from it share its type support."""
+        generated = "__type_hash__" in namespace
+        if generated or not bases:
+            keep_annotations(namespace, ())
+        if "Impl" in namespace:
+            namespace["Impl"].__annotations__ = {}
         cls = super().__new__(mcs, name, bases, namespace)
-        if "__type_hash__" in namespace:
+        if generated:
             mcs._interface = cls
-        if "__type_hash__" in namespace or not bases:
-            keep_annotations(cls, ())
-            if "Impl" in namespace:
-                keep_annotations(namespace["Impl"], ())
         return cls
 
 

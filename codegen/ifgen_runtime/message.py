@@ -162,11 +162,11 @@ class MessageMeta(InterfaceMeta):
         generated = "__type_hash__" in namespace
         if generated:
             _set_first_methods(namespace)
+        if generated or not bases:
+            keep_annotations(namespace, namespace["__slots__"])
         cls = super().__new__(mcs, name, bases, namespace)
         if not generated and bases:
             _copy_as_derived(cls)
-        if generated or not bases:
-            keep_annotations(cls, namespace["__slots__"])
         if generated:
             mcs._interface = cls
             type.__setattr__(cls, "__slots__", _add_private_names(cls, namespace))
