@@ -20,7 +20,7 @@ from ifgen_pytest.fixtures import (
     ros_node,
     ros_virtual_clock,
 )
-from ifgen_pytest.hints import hint
+from ifgen_pytest.hints import hint, skips
 from ifgen_pytest.strict import StrictCheck
 
 __all__ = [
@@ -109,6 +109,12 @@ def pytest_exception_interact(node: pytest.Item | pytest.Collector, call: Any, r
     asked = node.config.stash.get(_TRANSPORT, None) is not None
     if not asked and call.excinfo is not None and (advice := hint(call.excinfo.value)):
         report.sections.append(("ifgen", advice))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say why generated tests were skipped: pytest itself says so with -rs only."""
+    for line in skips(terminalreporter.stats.get("skipped", ())):
+        terminalreporter.write_line(line)
 
 
 @pytest.hookimpl(wrapper=True)

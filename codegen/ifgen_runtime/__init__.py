@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from ifgen_runtime.errors import DeserializationError as DeserializationError
     from ifgen_runtime.errors import SerializationError as SerializationError
     from ifgen_runtime.errors import ServerGoneError as ServerGoneError
+    from ifgen_runtime.errors import TextEncodingError as TextEncodingError
     from ifgen_runtime.interface import Action as Action
     from ifgen_runtime.interface import Service as Service
     from ifgen_runtime.message import Message as Message
@@ -37,6 +38,7 @@ __all__ = [
     "SerializationError",
     "ServerGoneError",
     "Service",
+    "TextEncodingError",
     "deserialize",
     "from_dict",
     "from_json",
@@ -59,6 +61,7 @@ __getattr__, __dir__ = lazy_exports(
         "SerializationError": "errors",
         "ServerGoneError": "errors",
         "Service": "interface",
+        "TextEncodingError": "errors",
         "deserialize": "codec",
         "from_dict": "convert",
         "from_json": "convert",

@@ -16,7 +16,7 @@ from ifgen_runtime.lazy import numeric, numpy
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, Protocol
+    from typing import Any, Protocol, TypeAlias
 
     from numpy.typing import NDArray
 
@@ -24,6 +24,19 @@ if TYPE_CHECKING:
         """An object with the buffer protocol, which Python itself has a name for since 3.12."""
 
         def __buffer__(self, flags: int, /) -> memoryview: ...
+
+    AnyArray: TypeAlias = NDArray[Any]
+else:
+
+    class Buffer:
+        """An object with the buffer protocol, in the annotations of constructors."""
+
+    def __getattr__(name):
+        if name != "AnyArray":
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from typing import Any  # only programs that evaluate annotations ask
+
+        return numpy.typing.NDArray[Any]
 
 
 # These have no buffer, or array.array copies it.

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+TYPE_CHECKING = False  # typing itself takes longer to import than a message package
+if TYPE_CHECKING:
+    from typing import Any
+
 
 class CodecError(ValueError):
     """A message and its other form do not fit together: `problem` says how, `path` says where.
@@ -22,19 +26,14 @@ class SerializationError(CodecError):
     """A field holds what the wire cannot hold: a wrong type, a value out of range, too many elements."""
 
 
-def as_raised(error: SerializationError) -> ValueError:
-    """The error of publishing a message that cannot be serialised, on every transport.
+class TextEncodingError(SerializationError, UnicodeEncodeError):
+    """Half of a surrogate pair in a text field: a UnicodeEncodeError, as rosidl's classes raise."""
 
-    That is the error itself, which names the field, except for half of a surrogate pair: programs written for
-    rclpy expect a UnicodeEncodeError there, so they get that one, with the field in a note.
-    """
-    cause: BaseException | None = error
-    while cause is not None:
-        if isinstance(cause, UnicodeEncodeError):
-            cause.add_note(str(error))
-            return cause
-        cause = cause.__context__
-    return error
+    def __init__(self, path: str, problem: str, *details: Any) -> None:
+        UnicodeEncodeError.__init__(self, *details)
+        self.args = (path, problem, *details)
+        self.path = path
+        self.problem = problem
 
 
 class DeserializationError(CodecError):

@@ -28,6 +28,12 @@ NATIVE: Final = "ifgen-ros-native"
 _FOLDERS: Final = {TOOLKIT: "", RUNTIME: "codegen/runtime", NATIVE: "codegen/native"}
 """The folder of each distribution in a checkout."""
 
+PUBLISHED: Final = False
+"""True once we have released to an index. Until then, whoever registers our names there is a stranger."""
+
+_WHEELS: Final = "FOLDER"
+"""Stands in advice for the folder with our wheels: no installer notes where `--find-links` pointed."""
+
 _OF_URLS: Final = ":/@~?&=%"  # pip has decoded the rest
 
 
@@ -51,6 +57,12 @@ def add_runtime() -> str:
     return _command(base, _requirement(RUNTIME, base))
 
 
+def add_toolkit() -> str:
+    """The command, quoted for a shell, that installs the toolkit that belongs to what is installed here."""
+    base = _installed()
+    return _command(base, _requirement(TOOLKIT, base))
+
+
 def origin() -> str:
     """Its origin, in a few words."""
     base = _installed()
@@ -60,7 +72,9 @@ def origin() -> str:
         return f"editable, from {base.path}"
     if base.url:
         return f"from {base.path or base.url}"
-    return "from a package index" if base.version else "not installed, only on sys.path"
+    if not base.version:
+        return "not installed, only on sys.path"
+    return "from a package index" if PUBLISHED else "from a folder of wheels: no index has ifgen yet"
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +127,15 @@ def _requirement(name: str, base: _Installed, extras: str = "") -> list[str]:
         above = len(Path(_FOLDERS[base.name]).parts)
         place = [path, *path.parents][above] / folder
         return [*(["--editable"] if base.is_editable and name != NATIVE else []), f"{place}{extras}"]
-    if name != base.name:
-        exactly = f"{name}=={base.version}" if base.version else name  # another may not fit
-        return ["--find-links", str(path.parent), exactly] if path and path.is_file() else [exactly]
     if path and path.is_file():
-        return ["--find-links", str(path.parent), f"{path}{extras}"]
-    return [f"{name}{extras} @ {base.url}" if base.url and path is None else f"{name}{extras}"]
+        wanted = f"{path}{extras}" if name == base.name else f"{name}=={base.version}"
+        return ["--find-links", str(path.parent), wanted]
+    if base.url and path is None and name == base.name:
+        return [f"{name}{extras} @ {base.url}"]
+    wanted = f"{name}{extras}"
+    if base.version and not (PUBLISHED and name == base.name):
+        wanted = f"{wanted}=={base.version}"  # another may not fit, or be a stranger's
+    return [wanted] if PUBLISHED else ["--find-links", _WHEELS, wanted]
 
 
 def _command(base: _Installed, arguments: Sequence[str]) -> str:

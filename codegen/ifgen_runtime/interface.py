@@ -4,6 +4,7 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from typing import Any, ClassVar, Generic, Protocol, Self, TypeVar
 
     RequestT = TypeVar("RequestT")
@@ -34,13 +35,27 @@ class InterfaceMeta(type):
         import_type_support(mcs._interface)
 
 
+def keep_annotations(namespace: dict[str, Any], names: Collection[str]) -> None:
+    """Drop the other annotations. Type checkers alone know their names; `get_type_hints` would raise.
+
+    A class without annotations would show those of its metaclass.
+    """
+    annotations: dict[str, str] = namespace.get("__annotations__", {})
+    namespace["__annotations__"] = {name: annotations[name] for name in names if name in annotations}
+
+
 class ServiceMeta(InterfaceMeta):
     """The metaclass of services and actions, which are never instantiated."""
 
     def __new__(mcs, name: str, bases: tuple[type, ...], namespace: dict[str, Any]) -> ServiceMeta:
         """Remember the generated class; classes derived from it share its type support."""
+        generated = "__type_hash__" in namespace
+        if generated or not bases:
+            keep_annotations(namespace, ())
+        if "Impl" in namespace:
+            namespace["Impl"].__annotations__ = {}
         cls = super().__new__(mcs, name, bases, namespace)
-        if "__type_hash__" in namespace:
+        if generated:
             mcs._interface = cls
         return cls
 

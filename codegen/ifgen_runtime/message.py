@@ -12,7 +12,7 @@ import os
 import sys
 
 from ifgen_runtime.copying import copied_fields
-from ifgen_runtime.interface import InterfaceMeta
+from ifgen_runtime.interface import InterfaceMeta, keep_annotations
 from ifgen_runtime.lazy import LazyModule
 
 TYPE_CHECKING = False  # typing itself takes longer to import than a message package
@@ -70,8 +70,11 @@ def checks_by_default() -> bool:
 
 
 def generated_class(message_class: type[Any]) -> type[Any]:
-    """The class as it was generated, for one that may be derived from it."""
-    return next(cls for cls in message_class.__mro__ if "__type_hash__" in vars(cls))
+    """The class as it was generated, for one that may be derived from it. AttributeError for `Message`."""
+    for cls in message_class.__mro__:
+        if "__type_hash__" in vars(cls):
+            return cls
+    raise AttributeError(f"{message_class.__name__} is the base of message classes, and has no fields")
 
 
 def default_of(message_class: type[Value]) -> Callable[[], Value]:
@@ -79,6 +82,10 @@ def default_of(message_class: type[Value]) -> Callable[[], Value]:
     if checks_by_default():
         return message_class
     return getattr(message_class, "__default__", message_class)  # rosidl's compiled classes have none
+
+
+class NoSuchField:
+    """The annotation of unknown keywords: no value has this type, so type checkers report all of them."""
 
 
 class MutableDefault:
@@ -155,6 +162,8 @@ class MessageMeta(InterfaceMeta):
         generated = "__type_hash__" in namespace
         if generated:
             _set_first_methods(namespace)
+        if generated or not bases:
+            keep_annotations(namespace, namespace["__slots__"])
         cls = super().__new__(mcs, name, bases, namespace)
         if not generated and bases:
             _copy_as_derived(cls)
@@ -306,7 +315,7 @@ class Message(metaclass=MessageMeta):
 
     def __reduce_ex__(self, protocol: Any) -> Any:
         """Pickle as rosidl's classes do, whose pickles can be read by ours and ours by theirs."""
-        reduced: Any = super().__reduce_ex__(protocol)
+        reduced: Any = super().__reduce_ex__(max(protocol, 2))  # older ones cannot hold slots
         function, (_, *arguments), *state = reduced
         # An object with checks is of a hidden class, but claims the public one.
         return (function, (self.__class__, *arguments), *state)

@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
+import subprocess
+import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -35,10 +39,14 @@ def test_formats(ifgen: Run, demo_msgs: Path) -> None:
     ifgen("generate", demo_msgs)
     write(Path("typings/rclpy/__init__.pyi"), "")
     vscode = json.loads(ifgen("paths", "--format", "vscode").out)
-    assert vscode == {"python.analysis.extraPaths": ["generated", "typings"]}
-    assert (
-        ifgen("paths", "--format", "pyright").out == '[tool.pyright]\nextraPaths = ["generated", "typings"]\n'
-    )
+    assert vscode == {
+        "python.analysis.extraPaths": ["generated", "typings"],
+        "python.analysis.diagnosticSeverityOverrides": {"reportMissingModuleSource": "none"},
+    }
+    pyright = ifgen("paths", "--format", "pyright").out
+    assert tomllib.loads(pyright)["tool"] == {
+        "pyright": {"extraPaths": ["generated", "typings"], "reportMissingModuleSource": False}
+    }
     assert ifgen("paths", "--format", "mypy").out == (
         '[tool.mypy]\nmypy_path = ["$MYPY_CONFIG_FILE_DIR/generated", "$MYPY_CONFIG_FILE_DIR/typings"]\n'
     )
@@ -93,3 +101,41 @@ def test_packages_that_the_project_generates_have_no_stubs(ifgen: Run) -> None:
     assert ifgen("typings").out.endswith(" removed\n")
     assert not Path("typings/std_msgs").exists()
     assert Path("typings/geometry_msgs").is_dir()
+
+
+PROGRAM = """
+import rclpy
+import tf2_ros
+from launch import LaunchDescription
+from launch_ros.actions import Node as Started
+from rclpy.node import Node
+from sensor_msgs_py import point_cloud2
+from std_msgs.msg import String
+
+print(Node, String, tf2_ros, LaunchDescription, Started, point_cloud2)
+print(rclpy.time.Time(), rclpy.duration.Duration(seconds=0.1), rclpy.qos.qos_profile_sensor_data)
+print(rclpy.logging.get_logger("a"), rclpy.executors.SingleThreadedExecutor(), rclpy.clock.Clock())
+"""
+
+
+@pytest.mark.slow
+def test_pyright_has_nothing_to_say_of_a_program_that_runs(ifgen: Run) -> None:
+    """The stubs and the settings of `ifgen paths`: what `import rclpy` brings along, and no warnings."""
+    write(Path("program.py"), PROGRAM)
+    write(Path("pyproject.toml"), ifgen("typings").out and ifgen("paths", "--format", "pyright").out)
+    command = [sys.executable, "-m", "pyright", "--outputjson", "--pythonpath", sys.executable, "program.py"]
+    checked = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert json.loads(checked.stdout)["generalDiagnostics"] == []
+
+
+@pytest.mark.slow
+def test_tools_that_import_find_everything_by_the_ways_of_the_page(ifgen: Run, demo_msgs: Path) -> None:
+    ifgen("generate", demo_msgs)
+    ifgen("typings")
+    shown = ifgen("run", "--transport", "local", "-m", "pydoc", "demo_msgs.msg").out
+    assert "Help on package demo_msgs.msg" in shown
+    folders = ifgen("paths", "--typings", "none").out.splitlines()
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(folders)}
+    command = [sys.executable, "-c", "import demo_msgs.msg, rclpy.node, tf2_ros; print(rclpy.node.__file__)"]
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert Path(ran.stdout.strip()).parent.parent == resources.underlay(), ran.stderr

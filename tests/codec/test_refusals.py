@@ -14,6 +14,7 @@ from ifgen_runtime import (
     CodecError,
     DeserializationError,
     SerializationError,
+    TextEncodingError,
     deserialize,
     serialize,
 )
@@ -229,3 +230,33 @@ def test_objects_of_another_class_for_the_same_type(classes: Classes) -> None:
         assert deserialize(serialize(message), twist) == message, "a message with checks takes the fast path"
     with without_slow_path(twist), pytest.raises(SlowPathTaken):
         serialize(twist(linear=foreign))
+
+
+TEXTS = [
+    ("Words.get_fields_and_field_types[1]", ["a", "\ud800"]),
+    ("Bounds.text", "\ud800"),
+    ("Bounds.texts[0]", ["\ud800"]),
+    ("Bounds.pair[1]", ["a", "\ud800"]),
+    ("Bounds.few_texts[1]", ["a", "\ud800"]),
+    ("Arrays.texts[0]", ["\ud800", "a"]),
+    ("Wide.text", "\ud800"),
+    ("Wide.bounded", "\ud800"),
+    ("Wide.many[1]", ["a", "\ud800"]),
+    ("Wide.pair[0]", ["\ud800", "a"]),
+]
+
+
+@pytest.mark.parametrize(("path", "value"), TEXTS, ids=[path for path, _ in TEXTS])
+@pytest.mark.parametrize("checks", [False, True])
+def test_half_a_surrogate_pair_in_any_text(classes: Classes, path: str, value: Any, checks: bool) -> None:
+    """The error has the path, and is the one of Python that programs written for rclpy catch."""
+    name, _, field = path.partition(".")
+    message = classes[f"codec_msgs/msg/{name}"](**{field.partition("[")[0]: value}, check_fields=checks)
+    with pytest.raises(TextEncodingError) as raised:
+        serialize(message)
+    error = raised.value
+    assert str(error) == f"{path}: half of a surrogate pair at character 0 cannot be sent"
+    assert isinstance(error, SerializationError)
+    assert isinstance(error, UnicodeEncodeError)
+    assert (error.path, error.object, error.start) == (path, "\ud800", 0)
+    assert str(pickle.loads(pickle.dumps(error))) == str(error)

@@ -78,7 +78,17 @@ constant_names = st.one_of(
 )
 class_names = st.one_of(
     st.sampled_from(
-        ["Message", "MessageMeta", "Any", "Final", "Never", "Sequence", "Iterable", "DEFAULT", "IntEnum"]
+        [
+            "Message",
+            "MessageMeta",
+            "Any",
+            "Final",
+            "NoSuchField",
+            "Sequence",
+            "Iterable",
+            "DEFAULT",
+            "IntEnum",
+        ]
     ),
     st.from_regex(r"[A-Z][A-Za-z0-9_]{0,8}", fullmatch=True),
 )

@@ -48,7 +48,7 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("path", "from /"),
         ("wheel", ".whl"),
         ("repository", "it's a clone at "),
-        ("index", "from a package index"),
+        ("folder", "from a folder of wheels"),
     ],
 )
 def test_advice_works(
@@ -73,7 +73,8 @@ def test_advice_works(
         case "repository":
             url = f"git+{clone.as_uri()}"
             install(python, f"ifgen-ros-runtime @ {url}#subdirectory=codegen/runtime", f"ifgen-ros @ {url}")
-        case "index":
+        case "folder":
+            (tmp_path / "FOLDER").symlink_to(toolkit.parent)  # what advice calls it
             monkeypatch.setenv("PIP_FIND_LINKS", str(toolkit.parent))
             # The packages of this environment come after the new one's, where pip counts them as installed.
             install(python, "--force-reinstall", "ifgen-ros", "ifgen-ros-runtime")
@@ -82,7 +83,7 @@ def test_advice_works(
     pip.chmod(0o755)
     monkeypatch.setenv("PATH", f"{python.parent}{os.pathsep}{os.environ['PATH']}")
     wanted = ["add_extra('test')", "add_runtime()"]
-    if way not in {"wheel", "index"} and shutil.which("cc"):
+    if way not in {"wheel", "folder"} and shutil.which("cc"):
         wanted += ["add_native()", "add_extra('ros')"]
     for call in wanted:
         program = f"from ifgen_runtime import installation; print(installation.{call})"

@@ -79,7 +79,7 @@ def test_on_real_rclpy(path: str, tmp_path: Path) -> None:
     # Sometimes the middleware prints a message of its own, about a client that has gone.
     assert not [line for line in real.splitlines() if line not in found]
     said = run(Path(path) / "ifgen", "doctor", cwd=tmp_path)
-    assert "(from a package index)" in said
+    assert "(from a folder of wheels: " in said
     assert "ifgen-ros-native 0.1.0: never-compiled packages work" in said
 
 

@@ -10,6 +10,7 @@ from typing import Any
 
 import ifgen
 import pytest
+from ifgen_runtime.installation import PUBLISHED
 
 from .support import ROOT
 
@@ -78,3 +79,12 @@ def test_real_ros_is_the_same_for_the_toolkit_and_for_a_robot() -> None:
     toolkit = project("")["optional-dependencies"]["ros"]
     assert toolkit == project("codegen/runtime")["optional-dependencies"]["ros"]
     assert f"ifgen-ros-native=={ifgen.__version__}" in toolkit[0]
+
+
+def test_pages_say_from_where_to_install_before_the_first_release() -> None:
+    """A stranger could register our names on an index until then."""
+    assert not PUBLISHED, "take the sentence out of the pages, and this test away"
+    for page in [*(ROOT / "docs").glob("*.md"), ROOT / "README.md"]:
+        text = " ".join(page.read_text(encoding="utf-8").split())
+        if re.search(r"pip install [^`]*ifgen-ros(?!-runtime` alone)", text):
+            assert re.search("No index has|Until the first release", text), page.name

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import ifgen
 import pytest
 
@@ -169,3 +171,24 @@ def test_what_the_project_has_generated_is_found(pytester: pytest.Pytester) -> N
     pytester.makepyprojecttoml("[tool.ifgen]\nnope = 1\n")
     result = pytester.runpytest_subprocess("--transport", "local")
     assert result.ret == pytest.ExitCode.USAGE_ERROR
+
+
+GENERATED = Path(__file__).resolve().parents[2] / "generated"
+
+
+@pytest.mark.parametrize(
+    ("missing", "line"),
+    [
+        ("rclpy", "ifgen: 1 file skipped: there is no rclpy: source ROS, or add --transport local"),
+        ("hypothesis", "ifgen: 1 file skipped: hypothesis is missing, of the extra `test`: run `*[[]test]*"),
+    ],
+)
+def test_the_reason_for_skipped_tests_is_shown(pytester: pytest.Pytester, missing: str, line: str) -> None:
+    """Without -rs, and once for each reason."""
+    tests = next(GENERATED.glob("std_srvs/test/test_*_interfaces.py")).read_text(encoding="utf-8")
+    needs = [line for line in tests.splitlines() if line.startswith("pytest.importorskip(")]
+    pytester.makepyfile(
+        "\n".join(["import sys", "import pytest", f"sys.modules[{missing!r}] = None", *needs])
+    )
+    ran = pytester.runpytest_inprocess("-p", "no:hypothesispytest")
+    ran.stdout.fnmatch_lines([line, "*1 skipped*"])

@@ -31,13 +31,30 @@ def installed(here: Path, name: str, record: object = None, installer: str = "pi
         (folder / "direct_url.json").write_text(json.dumps(record))
 
 
+@pytest.fixture
+def published(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As after our first release to an index."""
+    monkeypatch.setattr(installation, "PUBLISHED", True)
+
+
 def words(command: str) -> list[str]:
     """The arguments for pip to install."""
     found = shlex.split(command)
     return found[found.index("install") + 1 :]
 
 
-def test_from_an_index(here: Path) -> None:
+def test_from_a_folder_of_wheels(here: Path) -> None:
+    """No index has ours yet: advice names the folder, and exactly our version, which a stranger's is not."""
+    installed(here, "ifgen-ros")
+    links = ["--find-links", "FOLDER"]
+    assert words(installation.add_extra("ros")) == [*links, "ifgen-ros[ros]==0.1.0"]
+    assert words(installation.add_native()) == [*links, "ifgen-ros-native==0.1.0"]
+    assert words(installation.add_runtime()) == [*links, "ifgen-ros-runtime==0.1.0"]
+    assert words(installation.add_toolkit()) == [*links, "ifgen-ros==0.1.0"]
+    assert installation.origin() == "from a folder of wheels: no index has ifgen yet"
+
+
+def test_from_an_index(here: Path, published: None) -> None:
     installed(here, "ifgen-ros")
     assert words(installation.add_extra("ros")) == ["ifgen-ros[ros]"]
     assert words(installation.add_native()) == ["ifgen-ros-native==0.1.0"]
@@ -64,7 +81,7 @@ def test_on_a_robot(here: Path) -> None:
     assert words(installation.add_native()) == [f"{here}/codegen/native"]
 
 
-def test_a_checkout_that_is_gone(here: Path) -> None:
+def test_a_checkout_that_is_gone(here: Path, published: None) -> None:
     installed(here, "ifgen-ros", {"dir_info": {}, "url": (here / "gone").as_uri()})
     assert words(installation.add_extra("ros")) == ["ifgen-ros[ros]"]
 
@@ -93,12 +110,14 @@ def test_from_a_repository(here: Path) -> None:
     assert installation.origin() == f"from {url} at {COMMIT[:12]}"
 
 
-def test_on_the_path_only(here: Path) -> None:
+def test_on_the_path_only(here: Path, published: None) -> None:
     assert words(installation.add_extra("ros")) == ["ifgen-ros[ros]"]
     assert installation.origin() == "not installed, only on sys.path"
 
 
-def test_pip_is_that_of_this_environment(here: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pip_is_that_of_this_environment(
+    here: Path, published: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     installed(here, "ifgen-ros")
     monkeypatch.setenv("PATH", str(tmp_path))
     assert installation.add_extra("ros") == f"{shlex.quote(sys.executable)} -m pip install 'ifgen-ros[ros]'"
@@ -106,7 +125,7 @@ def test_pip_is_that_of_this_environment(here: Path, tmp_path: Path, monkeypatch
     assert installation.add_extra("ros") == "pip install 'ifgen-ros[ros]'"
 
 
-def test_uv(here: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_uv(here: Path, published: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     installed(here, "ifgen-ros", installer="uv")
     (tmp_path / "uv").touch(mode=0o755)
     monkeypatch.setenv("PATH", str(tmp_path))

@@ -109,17 +109,27 @@ def _relative(folder: Path, root: Path) -> str:
     return (folder.relative_to(root) if inside else folder).as_posix()
 
 
+_NO_SOURCE: Final = "reportMissingModuleSource"
+"""The rule of pyright, and of Pylance, against stubs of modules that no folder has."""
+
+
 def _plain(folders: Sequence[str]) -> Iterator[str]:
     yield from folders
 
 
 def _vscode(folders: Sequence[str]) -> Iterator[str]:
-    yield json.dumps({"python.analysis.extraPaths": folders}, indent=4)
+    severities = {_NO_SOURCE: "none"}
+    settings = {
+        "python.analysis.extraPaths": folders,
+        "python.analysis.diagnosticSeverityOverrides": severities,
+    }
+    yield json.dumps(settings, indent=4)
 
 
 def _pyright(folders: Sequence[str]) -> Iterator[str]:
     yield "[tool.pyright]"
     yield f"extraPaths = {json.dumps(folders)}"
+    yield f"{_NO_SOURCE} = false # rclpy and the messages have stubs here, and come with `ifgen run`"
 
 
 def _mypy(folders: Sequence[str]) -> Iterator[str]:

@@ -7,6 +7,7 @@ from typing import assert_never
 
 from ifgen.definition import derive, explain, names, rules
 from ifgen.definition.escapes import BadValue
+from ifgen.definition.impossible import check_sizes
 from ifgen.definition.interfaces import Constant, Field, Folder, Interface, Message, Scalar
 from ifgen.definition.literals import default_value, scalar_value
 from ifgen.definition.problems import FileProblems
@@ -108,7 +109,9 @@ class _Builder:
         if isinstance(type_, BadType):
             self._problems.error(explain.bad_type, type_, type_text, self._source, node.type_start)
         elif "<" in type_text or "[" in type_text:
-            rules.check_type(type_text, type_, self._span(node.type_start, type_text), self._problems)
+            place = self._span(node.type_start, type_text)
+            check_sizes(type_, place, self._problems)
+            rules.check_type(type_text, type_, place, self._problems)
         if not names.is_field_name(name):
             if not type_text.endswith("["):  # a space in the brackets: what follows is no name
                 self._problems.error(explain.invalid_field_name, name, span)

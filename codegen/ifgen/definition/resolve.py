@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TypeAlias, cast
 
 from ifgen.definition import build, dependencies, derive, files, names, package_names, references
-from ifgen.definition.cycles import check_cycles
+from ifgen.definition.impossible import check_cycles, check_totals
 from ifgen.definition.interfaces import (
     Action,
     Field,
@@ -119,6 +119,8 @@ class _Resolver:
             found += (*problems.errors(), *problems.warnings())
         errors = [diagnostic for diagnostic in found if diagnostic.severity == "error"]
         errors += check_cycles(self._messages)
+        if not errors:
+            errors += check_totals(self._messages)
         return one_for_each_cause(errors), [d for d in found if d.severity == "warning"]
 
     def broken(self, errors: Iterable[Diagnostic]) -> frozenset[str]:

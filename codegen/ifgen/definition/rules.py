@@ -18,8 +18,6 @@ from ifgen.definition.types import (
     Array,
     BasicType,
     BoundedSequence,
-    BoundedString,
-    BoundedWString,
     FieldType,
     UnboundedSequence,
     ValueType,
@@ -52,7 +50,6 @@ _TROUBLESOME: Final = frozenset(keyword.kwlist) | _C_KEYWORDS | _CPP_KEYWORDS | 
 
 _LARGEST_FLOAT32: Final = (2 - 2**-24) * 2.0**127
 """From here on a number is infinite as a float32."""
-_LARGEST_SIZE: Final = 2**32 - 1
 _READABLE: Final = 10_000
 """The length in characters of an array after which the quotes of its strings are not checked."""
 _LAST_WORD: Final = re.compile(r"\w+\Z")
@@ -91,7 +88,7 @@ def optional_field(span: Span) -> Diagnostic:
 
 
 def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) -> None:
-    """Warn of sizes that no message can have, and of a bound that rosidl puts elsewhere, in a .msg file."""
+    """Warn of a bound that rosidl puts elsewhere, in a .msg file."""
     if isinstance(type_, BoundedSequence) and text.endswith("[]"):
         problems.warning(
             _warning,
@@ -101,33 +98,6 @@ def check_type(text: str, type_: FieldType, span: Span, problems: FileProblems) 
             f"rosidl reads `{text[:-1]}<={type_.maximum_size}]`, and so do we",
             "write that, or give the sequence its own bound",
         )
-    check_sizes(type_, span, problems)
-
-
-def check_sizes(type_: FieldType, span: Span, problems: FileProblems) -> None:
-    """Warn of sizes that no message can have."""
-    if any(size > _LARGEST_SIZE for size in _sizes(type_)):
-        problems.warning(
-            _warning,
-            "huge-size",
-            f"the size of `{shorten(span.source.text[span.start : span.end])}` is above {_LARGEST_SIZE}",
-            span,
-            "rosidl accepts it, but a length on the wire has 32 bits",
-        )
-
-
-def _sizes(type_: FieldType) -> list[int]:
-    match type_:
-        case Array(value_type=element, size=size):
-            return [size, *_sizes(element)]
-        case BoundedSequence(value_type=element, maximum_size=size):
-            return [size, *_sizes(element)]
-        case UnboundedSequence(value_type=element):
-            return _sizes(element)
-        case BoundedString(maximum_size=size) | BoundedWString(maximum_size=size):
-            return [size]
-        case _:
-            return []
 
 
 def check_value(

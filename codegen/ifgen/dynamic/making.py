@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from functools import cache
 from threading import RLock
 from types import SimpleNamespace
-from typing import Any, Final
+from typing import Any, Final, get_type_hints
 
 from ifgen.definition.interfaces import Action, Message, Registry
 from ifgen.definition.references import references
@@ -92,6 +92,7 @@ class _Making:
             exec(compile(text, file_name, "exec", dont_inherit=True), module)
         except ImportError as error:
             raise InputError([_missing(described, error)]) from error
+        _resolve_hints(module)
         cls: type[Any] = module[described.name]
         if isinstance(described, Message):
             nested = tuple(self._made[type_.type_name] for _, type_ in references(described))
@@ -99,6 +100,13 @@ class _Making:
         definition = (described, *needed)
         copyreg.pickle(type(cls), lambda _: (_restored, (described.type_name, definition)))
         return cls
+
+
+def _resolve_hints(module: dict[str, Any]) -> None:
+    """Put classes in the place of names in annotations: no import finds the module that has these names."""
+    for cls in module.values():
+        if "__type_hash__" in getattr(cls, "__dict__", ()) and cls.__module__ == module["__name__"]:
+            cls.__annotations__ = get_type_hints(cls, module)
 
 
 def _restored(type_name: str, definition: tuple[Described, ...]) -> type[Any]:

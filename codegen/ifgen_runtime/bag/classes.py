@@ -58,10 +58,12 @@ class Classes:
     def _made(self, topic: str, definition: Definition, installed: type[Any] | None) -> type[Any]:
         make = _maker()
         if make is None:
+            from ifgen_runtime.installation import (
+                add_toolkit,
+            )  # takes long to load, and only an error needs it
+
             problem = _no_class(topic, definition, installed)
-            raise BagError(
-                f"{self._place}: {problem}. The toolkit makes one from the file: pip install ifgen-ros"
-            )
+            raise BagError(f"{self._place}: {problem}. The toolkit makes one from the file: {add_toolkit()}")
         try:
             cls: type[Any] = make(definition.type_name, definition.text, idl=definition.encoding == "ros2idl")
         except Exception as error:  # the toolkit's InputError, which this package must not import

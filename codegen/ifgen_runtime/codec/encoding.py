@@ -16,7 +16,7 @@ from typing import Any
 
 from ifgen_runtime.arrays import array_of, is_array
 from ifgen_runtime.codec.texts import wstring_wire
-from ifgen_runtime.errors import Problem, SerializationError
+from ifgen_runtime.errors import Problem, SerializationError, TextEncodingError
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
 from ifgen_runtime.lazy import numpy
 
@@ -35,7 +35,10 @@ def encode_any(message: Any) -> bytes:
     try:
         _message(out, message, cls)
     except Problem as problem:
-        raise SerializationError(cls.__name__ + problem.place, problem.text) from None
+        path, failure = cls.__name__ + problem.place, problem.__context__
+        if isinstance(failure, UnicodeEncodeError):
+            raise TextEncodingError(path, problem.text, *failure.args) from None
+        raise SerializationError(path, problem.text) from None
     return bytes(out)
 
 

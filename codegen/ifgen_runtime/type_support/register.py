@@ -14,7 +14,7 @@ from typing import Any
 from ifgen_runtime.codec import serialize
 from ifgen_runtime.codec.choice import attached
 from ifgen_runtime.codec.decoding import decode_any
-from ifgen_runtime.errors import DeserializationError, SerializationError, as_raised
+from ifgen_runtime.errors import DeserializationError
 from ifgen_runtime.type_description import describe, sources, type_name
 from ifgen_runtime.type_support import tables
 from ifgen_runtime.type_support.binding import native
@@ -83,7 +83,7 @@ def _message(cls: type[Any]) -> tuple[int, tuple[Any, ...]]:
             name,
             introspection_handle(description),
             *type_tables(cls, description),
-            _encoder(cls),
+            _in_python(cls)[0],
             _decoder(cls),
             layout_of(cls, description),
         )
@@ -126,18 +126,6 @@ def type_tables(cls: type[Any], description: Description) -> tuple[int, int, int
 
 
 # What the codec in C leaves to Python, and everything where it does not run.
-
-
-def _encoder(cls: type[Any]) -> Callable[[Any], bytes]:
-    encode = _in_python(cls)[0]
-
-    def encode_sent(message: Any) -> bytes:
-        try:
-            return encode(message)
-        except SerializationError as error:
-            raise as_raised(error) from None
-
-    return encode_sent
 
 
 def _decoder(cls: type[Any]) -> Callable[[bytes], Any]:

@@ -37,8 +37,8 @@ class Publisher(Generic[MessageT]):
     def publish(self, msg: MessageT | bytes) -> None:
         """Publish a message, or the CDR bytes of one.
 
-        Raises TypeError for an object of another class, and ValueError for a field value that cannot be sent:
-        UnicodeEncodeError for half of a surrogate pair, else SerializationError.
+        Raises TypeError for an object of another class, and SerializationError (a ValueError) for a field
+        value that cannot be sent. For half of a surrogate pair it is a UnicodeEncodeError, too.
         """
         handle = self.__publisher
         if handle._destruction_requested:

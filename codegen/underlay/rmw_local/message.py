@@ -10,7 +10,7 @@ from typing import Any
 from ifgen_runtime.codec import deserialize, serialize
 from ifgen_runtime.codec.choice import attached, packer
 from ifgen_runtime.errors import DeserializationError as DecodeError
-from ifgen_runtime.errors import SerializationError, as_raised
+from ifgen_runtime.errors import SerializationError
 from ifgen_runtime.message import generated_class
 
 from rmw_local.notices import Drops
@@ -20,7 +20,6 @@ __all__ = [
     "MessageType",
     "SerializationError",
     "ServiceType",
-    "as_raised",
     "is_message_class",
     "is_service_class",
     "message_type",

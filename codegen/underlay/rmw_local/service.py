@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from rmw_local import observer, timing
 from rmw_local.endpoint import Ends
-from rmw_local.message import DecodeError, SerializationError, as_raised
+from rmw_local.message import DecodeError
 from rmw_local.notices import no_response
 from rmw_local.qos import mismatch
 from rmw_local.ready import ReadySource
@@ -139,7 +139,7 @@ class ServiceClient(ServiceEndpoint):
 
     def send(self, request: Any) -> int:
         """Send a request to every matched server; return its number, from 1."""
-        data = _serialized(self.sends, request)
+        data = self.sends.serialize(request)
         number = next(self._numbers)
         letter = (data, timing.time_ns(), self.gid, number)
         servers = self._asked
@@ -253,7 +253,7 @@ class ServiceServer(ServiceEndpoint):
 
     def respond(self, client_gid: bytes, number: int, response: Any) -> None:
         """Send a response. If the client is gone, it is dropped."""
-        data = _serialized(self.sends, response)
+        data = self.sends.serialize(response)
         client = self.clients.get(client_gid)
         letter = (data, timing.time_ns(), client_gid, number)
         if client is not None and not client.is_remote:
@@ -305,13 +305,6 @@ class ServiceName:
 
 def _keep_quiet(_: Letter) -> None:
     """Tell nobody: there are no other processes."""
-
-
-def _serialized(kind: MessageType, message: Any) -> bytes:
-    try:
-        return kind.serialize(message)
-    except SerializationError as error:
-        raise as_raised(error) from None
 
 
 def _introduce(client: ServiceClient, server: ServiceServer, newcomer: ServiceEndpoint) -> None:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Protocol
 from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
 from rmw_local.liveliness import Lease
-from rmw_local.message import SerializationError, as_raised
 from rmw_local.mismatch.passage import Marking
 from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC, RELIABLE
 from rmw_local.status import DeadlineStatus, LivelinessLostStatus
@@ -85,11 +84,7 @@ class Writer(Endpoint):
     def publish(self, message: Any) -> None:
         """Deliver a message of the writer's class; refuses field values that cannot be sent, read or not."""
         serialize, readers = self._route
-        try:
-            data = serialize(message)
-        except SerializationError as error:
-            raise as_raised(error) from None
-        self._deliver(data, readers)
+        self._deliver(serialize(message), readers)
 
     def publish_bytes(self, data: bytes) -> None:
         """Deliver a serialised message of the writer's class."""

@@ -10,6 +10,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -21,7 +22,7 @@ from action_msgs.msg import GoalInfo as action_msgs_msg_GoalInfo
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
 _check_fields = checks_by_default()
 
@@ -103,7 +104,7 @@ class GoalStatus(Message, metaclass=Metaclass_GoalStatus):
         goal_info: action_msgs_msg_GoalInfo = DEFAULT,
         status: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

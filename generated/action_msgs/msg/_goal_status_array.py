@@ -6,13 +6,20 @@ RIHS01_6c1684b00f177d37438febe6e709fc4e2b0d4248dca4854946f9ed8b30cda83e
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from action_msgs.msg import GoalStatus as action_msgs_msg_GoalStatus
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -44,7 +51,7 @@ class GoalStatusArray(Message, metaclass=Metaclass_GoalStatusArray):
         *,
         status_list: list[action_msgs_msg_GoalStatus] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from action_msgs.msg import GoalInfo as action_msgs_msg_GoalInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -55,7 +56,7 @@ class CancelGoal_Request(Message, metaclass=Metaclass_CancelGoal_Request):
         *,
         goal_info: action_msgs_msg_GoalInfo = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -141,7 +142,7 @@ class CancelGoal_Response(Message, metaclass=Metaclass_CancelGoal_Response):
         return_code: int = 0,
         goals_canceling: list[action_msgs_msg_GoalInfo] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -229,7 +230,7 @@ class CancelGoal_Event(Message, metaclass=Metaclass_CancelGoal_Event):
         request: list[CancelGoal_Request] = DEFAULT,
         response: list[CancelGoal_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,11 +6,11 @@ RIHS01_e8d009f659816f758b75334ee1a9ca5b5c0b859843261f14c7f937349599d93b
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_other, new_object, repr_name
-from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -55,7 +55,7 @@ class Duration(Message, metaclass=Metaclass_Duration):
         sec: int = 0,
         nanosec: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -20,7 +21,7 @@ from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventIn
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -113,7 +114,7 @@ class LoadNode_Request(Message, metaclass=Metaclass_LoadNode_Request):
         parameters: list[rcl_interfaces_msg_Parameter] = DEFAULT,
         extra_arguments: list[rcl_interfaces_msg_Parameter] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -253,7 +254,7 @@ class LoadNode_Response(Message, metaclass=Metaclass_LoadNode_Response):
         full_node_name: str = "",
         unique_id: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -351,7 +352,7 @@ class LoadNode_Event(Message, metaclass=Metaclass_LoadNode_Event):
         request: list[LoadNode_Request] = DEFAULT,
         response: list[LoadNode_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,13 +6,20 @@ RIHS01_b0e3e692ea2d54a8af2f4ef1930e81556a2db55216b771f8a7d2724ed47bf0e4
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from diagnostic_msgs.msg import KeyValue as diagnostic_msgs_msg_KeyValue
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
 _check_fields = checks_by_default()
 
@@ -93,7 +100,7 @@ class DiagnosticStatus(Message, metaclass=Metaclass_DiagnosticStatus):
         hardware_id: str = "",
         values: list[diagnostic_msgs_msg_KeyValue] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

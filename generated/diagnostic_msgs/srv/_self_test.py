@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from diagnostic_msgs.msg import DiagnosticStatus as diagnostic_msgs_msg_Diagnost
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -44,7 +45,7 @@ class SelfTest_Request(Message, metaclass=Metaclass_SelfTest_Request):
         self,
         *,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -120,7 +121,7 @@ class SelfTest_Response(Message, metaclass=Metaclass_SelfTest_Response):
         passed: bytes = b'\x00',
         status: list[diagnostic_msgs_msg_DiagnosticStatus] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -213,7 +214,7 @@ class SelfTest_Event(Message, metaclass=Metaclass_SelfTest_Event):
         request: list[SelfTest_Request] = DEFAULT,
         response: list[SelfTest_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -10,6 +10,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -19,7 +20,7 @@ from example_interfaces.msg import MultiArrayLayout as example_interfaces_msg_Mu
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -61,7 +62,7 @@ class ByteMultiArray(Message, metaclass=Metaclass_ByteMultiArray):
         layout: example_interfaces_msg_MultiArrayLayout = DEFAULT,
         data: list[bytes] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,11 +6,11 @@ RIHS01_1b3b9a6502f560d079520c73c685a9550e5a1838d2cefd537fe0aba75a3639a0
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_other, new_object, repr_name
-from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -45,7 +45,7 @@ class Int64(Message, metaclass=Metaclass_Int64):
         *,
         data: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

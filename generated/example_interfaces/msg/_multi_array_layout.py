@@ -6,13 +6,20 @@ RIHS01_ba42ea30074e5826a1e91f70f3660dda2996937169487f877fc20a8a402e2c27
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from example_interfaces.msg import MultiArrayDimension as example_interfaces_msg_MultiArrayDimension
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -59,7 +66,7 @@ class MultiArrayLayout(Message, metaclass=Metaclass_MultiArrayLayout):
         dim: list[example_interfaces_msg_MultiArrayDimension] = DEFAULT,
         data_offset: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,6 +6,7 @@ RIHS01_0683176c523a116c76141c6d4abd150dbff492b72185f1260ce38a18a35aafcf
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -23,6 +24,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -33,8 +35,7 @@ from example_interfaces.msg import MultiArrayLayout as example_interfaces_msg_Mu
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import UInt32Array
 
@@ -75,7 +76,7 @@ class UInt32MultiArray(Message, metaclass=Metaclass_UInt32MultiArray):
         layout: example_interfaces_msg_MultiArrayLayout = DEFAULT,
         data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

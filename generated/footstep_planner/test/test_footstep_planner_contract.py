@@ -21,8 +21,8 @@ from typing import Any, TypeAlias
 
 import pytest
 
-pytest.importorskip("hypothesis", reason="it is not installed: pip install 'ifgen-ros[test]'")
-pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
+pytest.importorskip("hypothesis", reason="ifgen: hypothesis is missing, of the extra `test`")
+pytest.importorskip("rclpy", reason="ifgen: there is no rclpy: source ROS, or add --transport local")
 
 import builtin_interfaces.msg
 import geometry_msgs.msg

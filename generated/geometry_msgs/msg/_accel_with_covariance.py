@@ -5,6 +5,8 @@ RIHS01_230d51bd53bc36f260574e73b42941cefe44684753480b6fc330c032c5db5997
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ifgen_runtime.copying import (
     ITERABLES,
     arrays,
@@ -18,6 +20,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -28,8 +31,7 @@ from geometry_msgs.msg import Accel as geometry_msgs_msg_Accel
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
     import numpy
     from numpy.typing import NDArray
@@ -66,9 +68,9 @@ class AccelWithCovariance(Message, metaclass=Metaclass_AccelWithCovariance):
         self,
         *,
         accel: geometry_msgs_msg_Accel = DEFAULT,
-        covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        covariance: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -91,7 +93,7 @@ class AccelWithCovariance(Message, metaclass=Metaclass_AccelWithCovariance):
         return self._covariance
 
     @covariance.setter
-    def covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def covariance(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:

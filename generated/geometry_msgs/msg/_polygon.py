@@ -6,13 +6,20 @@ RIHS01_3782f9f0bf044964d692d6c017d705e37611afb1f0bf6a9dee248a7dda0f784a
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from geometry_msgs.msg import Point32 as geometry_msgs_msg_Point32
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -44,7 +51,7 @@ class Polygon(Message, metaclass=Metaclass_Polygon):
         *,
         points: list[geometry_msgs_msg_Point32] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -15,6 +15,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -26,7 +27,7 @@ from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -78,7 +79,7 @@ class PerformDance_Goal(Message, metaclass=Metaclass_PerformDance_Goal):
         tempo: float = 0.0,
         beats: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -198,7 +199,7 @@ class PerformDance_Result(Message, metaclass=Metaclass_PerformDance_Result):
         time: builtin_interfaces_msg_Duration = DEFAULT,
         joint_error: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -341,7 +342,7 @@ class PerformDance_Feedback(Message, metaclass=Metaclass_PerformDance_Feedback):
         progress: float = 0.0,
         joint_error: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -430,7 +431,7 @@ class PerformDance_SendGoal_Request(Message, metaclass=Metaclass_PerformDance_Se
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         goal: PerformDance_Goal = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -509,7 +510,7 @@ class PerformDance_SendGoal_Response(Message, metaclass=Metaclass_PerformDance_S
         accepted: bool = False,
         stamp: builtin_interfaces_msg_Time = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -597,7 +598,7 @@ class PerformDance_SendGoal_Event(Message, metaclass=Metaclass_PerformDance_Send
         request: list[PerformDance_SendGoal_Request] = DEFAULT,
         response: list[PerformDance_SendGoal_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -670,7 +671,7 @@ class PerformDance_GetResult_Request(Message, metaclass=Metaclass_PerformDance_G
         *,
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -744,7 +745,7 @@ class PerformDance_GetResult_Response(Message, metaclass=Metaclass_PerformDance_
         status: int = 0,
         result: PerformDance_Result = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -832,7 +833,7 @@ class PerformDance_GetResult_Event(Message, metaclass=Metaclass_PerformDance_Get
         request: list[PerformDance_GetResult_Request] = DEFAULT,
         response: list[PerformDance_GetResult_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -916,7 +917,7 @@ class PerformDance_FeedbackMessage(Message, metaclass=Metaclass_PerformDance_Fee
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         feedback: PerformDance_Feedback = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -16,6 +16,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -27,7 +28,7 @@ from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -90,7 +91,7 @@ class WalkTo_Goal(Message, metaclass=Metaclass_WalkTo_Goal):
         yaw_tolerance: float = 0.0,
         max_step_length: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -252,7 +253,7 @@ class WalkTo_Result(Message, metaclass=Metaclass_WalkTo_Result):
         steps: int = 0,
         time: builtin_interfaces_msg_Duration = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -370,7 +371,7 @@ class WalkTo_Feedback(Message, metaclass=Metaclass_WalkTo_Feedback):
         steps_taken: int = 0,
         steps_left: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -464,7 +465,7 @@ class WalkTo_SendGoal_Request(Message, metaclass=Metaclass_WalkTo_SendGoal_Reque
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         goal: WalkTo_Goal = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -543,7 +544,7 @@ class WalkTo_SendGoal_Response(Message, metaclass=Metaclass_WalkTo_SendGoal_Resp
         accepted: bool = False,
         stamp: builtin_interfaces_msg_Time = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -631,7 +632,7 @@ class WalkTo_SendGoal_Event(Message, metaclass=Metaclass_WalkTo_SendGoal_Event):
         request: list[WalkTo_SendGoal_Request] = DEFAULT,
         response: list[WalkTo_SendGoal_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -704,7 +705,7 @@ class WalkTo_GetResult_Request(Message, metaclass=Metaclass_WalkTo_GetResult_Req
         *,
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -778,7 +779,7 @@ class WalkTo_GetResult_Response(Message, metaclass=Metaclass_WalkTo_GetResult_Re
         status: int = 0,
         result: WalkTo_Result = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -866,7 +867,7 @@ class WalkTo_GetResult_Event(Message, metaclass=Metaclass_WalkTo_GetResult_Event
         request: list[WalkTo_GetResult_Request] = DEFAULT,
         response: list[WalkTo_GetResult_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -950,7 +951,7 @@ class WalkTo_FeedbackMessage(Message, metaclass=Metaclass_WalkTo_FeedbackMessage
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         feedback: WalkTo_Feedback = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

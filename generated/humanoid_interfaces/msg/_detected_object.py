@@ -12,6 +12,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -20,7 +21,7 @@ from sensor_msgs.msg import RegionOfInterest as sensor_msgs_msg_RegionOfInterest
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -99,7 +100,7 @@ class DetectedObject(Message, metaclass=Metaclass_DetectedObject):
         pose: geometry_msgs_msg_Pose = DEFAULT,
         size: geometry_msgs_msg_Vector3 = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

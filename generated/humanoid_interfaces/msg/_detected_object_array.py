@@ -10,6 +10,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -20,7 +21,7 @@ from humanoid_interfaces.msg import DetectedObject as humanoid_interfaces_msg_De
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -62,7 +63,7 @@ class DetectedObjectArray(Message, metaclass=Metaclass_DetectedObjectArray):
         header: std_msgs_msg_Header = DEFAULT,
         objects: list[humanoid_interfaces_msg_DetectedObject] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -10,6 +10,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -20,7 +21,7 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
 _check_fields = checks_by_default()
 
@@ -129,7 +130,7 @@ class EmergencyStop(Message, metaclass=Metaclass_EmergencyStop):
         source: str = "",
         reason: str = "",
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

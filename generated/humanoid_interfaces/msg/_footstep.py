@@ -13,6 +13,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -22,7 +23,7 @@ from ifgen_runtime.message import (
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
 _check_fields = checks_by_default()
 
@@ -118,7 +119,7 @@ class Footstep(Message, metaclass=Metaclass_Footstep):
         orientation: geometry_msgs_msg_Quaternion = DEFAULT,
         step_time: builtin_interfaces_msg_Duration = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from humanoid_interfaces.msg import Footstep as humanoid_interfaces_msg_Footstep
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -82,7 +83,7 @@ class FootstepPlan(Message, metaclass=Metaclass_FootstepPlan):
         steps: list[humanoid_interfaces_msg_Footstep] = DEFAULT,
         goal: geometry_msgs_msg_Pose = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -12,6 +12,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -23,7 +24,7 @@ from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventIn
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -105,7 +106,7 @@ class CheckHeadPose_Request(Message, metaclass=Metaclass_CheckHeadPose_Request):
         position_tolerance: float = 0.0,
         orientation_tolerance: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -219,7 +220,7 @@ class CheckHeadPose_Response(Message, metaclass=Metaclass_CheckHeadPose_Response
         position_residual: float = 0.0,
         orientation_residual: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -334,7 +335,7 @@ class CheckHeadPose_Event(Message, metaclass=Metaclass_CheckHeadPose_Event):
         request: list[CheckHeadPose_Request] = DEFAULT,
         response: list[CheckHeadPose_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

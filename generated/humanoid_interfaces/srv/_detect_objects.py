@@ -12,6 +12,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -24,7 +25,7 @@ from humanoid_interfaces.msg import DetectedObjectArray as humanoid_interfaces_m
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -87,7 +88,7 @@ class DetectObjects_Request(Message, metaclass=Metaclass_DetectObjects_Request):
         max_objects: int = 0,
         max_age: builtin_interfaces_msg_Duration = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -214,7 +215,7 @@ class DetectObjects_Response(Message, metaclass=Metaclass_DetectObjects_Response
         message: str = "",
         detections: humanoid_interfaces_msg_DetectedObjectArray = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -307,7 +308,7 @@ class DetectObjects_Event(Message, metaclass=Metaclass_DetectObjects_Event):
         request: list[DetectObjects_Request] = DEFAULT,
         response: list[DetectObjects_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -23,7 +24,7 @@ from humanoid_interfaces.msg import Stance as humanoid_interfaces_msg_Stance
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -93,7 +94,7 @@ class FollowPath_Request(Message, metaclass=Metaclass_FollowPath_Request):
         first_index: int = 0,
         max_step_length: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -196,7 +197,7 @@ class FollowPath_Response(Message, metaclass=Metaclass_FollowPath_Response):
         message: str = "",
         plan: humanoid_interfaces_msg_FootstepPlan = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -289,7 +290,7 @@ class FollowPath_Event(Message, metaclass=Metaclass_FollowPath_Event):
         request: list[FollowPath_Request] = DEFAULT,
         response: list[FollowPath_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

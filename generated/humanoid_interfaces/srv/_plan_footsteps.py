@@ -13,6 +13,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -26,7 +27,7 @@ from humanoid_interfaces.msg import Stance as humanoid_interfaces_msg_Stance
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -98,7 +99,7 @@ class PlanFootsteps_Request(Message, metaclass=Metaclass_PlanFootsteps_Request):
         max_step_length: float = 0.0,
         step_time: builtin_interfaces_msg_Duration = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -243,7 +244,7 @@ class PlanFootsteps_Response(Message, metaclass=Metaclass_PlanFootsteps_Response
         message: str = "",
         plan: humanoid_interfaces_msg_FootstepPlan = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -336,7 +337,7 @@ class PlanFootsteps_Event(Message, metaclass=Metaclass_PlanFootsteps_Event):
         request: list[PlanFootsteps_Request] = DEFAULT,
         response: list[PlanFootsteps_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -12,6 +12,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -23,7 +24,7 @@ from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventIn
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -66,7 +67,7 @@ class PlanPath_Request(Message, metaclass=Metaclass_PlanPath_Request):
         start: geometry_msgs_msg_PoseStamped = DEFAULT,
         goal: geometry_msgs_msg_PoseStamped = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -190,7 +191,7 @@ class PlanPath_Response(Message, metaclass=Metaclass_PlanPath_Response):
         message: str = "",
         path: nav_msgs_msg_Path = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -283,7 +284,7 @@ class PlanPath_Event(Message, metaclass=Metaclass_PlanPath_Event):
         request: list[PlanPath_Request] = DEFAULT,
         response: list[PlanPath_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

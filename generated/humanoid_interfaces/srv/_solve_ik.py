@@ -13,6 +13,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -24,7 +25,7 @@ from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventIn
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -134,7 +135,7 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
         timeout: builtin_interfaces_msg_Duration = DEFAULT,
         random_seed: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -350,7 +351,7 @@ class SolveIK_Response(Message, metaclass=Metaclass_SolveIK_Response):
         attempts: int = 0,
         computing_time: builtin_interfaces_msg_Duration = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -475,7 +476,7 @@ class SolveIK_Event(Message, metaclass=Metaclass_SolveIK_Event):
         request: list[SolveIK_Request] = DEFAULT,
         response: list[SolveIK_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

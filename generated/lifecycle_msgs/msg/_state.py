@@ -6,11 +6,11 @@ RIHS01_dd2d02b82f3ebc858e53c431b1e6e91f3ffc71436fc81d0715214ac6ee2107a0
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_other, new_object, repr_name
-from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
 _check_fields = checks_by_default()
 
@@ -82,7 +82,7 @@ class State(Message, metaclass=Metaclass_State):
         id: int = 0,
         label: str = "",
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

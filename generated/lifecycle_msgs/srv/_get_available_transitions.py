@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from lifecycle_msgs.msg import TransitionDescription as lifecycle_msgs_msg_Trans
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -47,7 +48,7 @@ class GetAvailableTransitions_Request(Message, metaclass=Metaclass_GetAvailableT
         self,
         *,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -100,7 +101,7 @@ class GetAvailableTransitions_Response(Message, metaclass=Metaclass_GetAvailable
         *,
         available_transitions: list[lifecycle_msgs_msg_TransitionDescription] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -183,7 +184,7 @@ class GetAvailableTransitions_Event(Message, metaclass=Metaclass_GetAvailableTra
         request: list[GetAvailableTransitions_Request] = DEFAULT,
         response: list[GetAvailableTransitions_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from lifecycle_msgs.msg import State as lifecycle_msgs_msg_State
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -44,7 +45,7 @@ class GetState_Request(Message, metaclass=Metaclass_GetState_Request):
         self,
         *,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -97,7 +98,7 @@ class GetState_Response(Message, metaclass=Metaclass_GetState_Response):
         *,
         current_state: lifecycle_msgs_msg_State = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -180,7 +181,7 @@ class GetState_Event(Message, metaclass=Metaclass_GetState_Event):
         request: list[GetState_Request] = DEFAULT,
         response: list[GetState_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from nav_msgs.msg import OccupancyGrid as nav_msgs_msg_OccupancyGrid
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -44,7 +45,7 @@ class GetMap_Request(Message, metaclass=Metaclass_GetMap_Request):
         self,
         *,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -97,7 +98,7 @@ class GetMap_Response(Message, metaclass=Metaclass_GetMap_Response):
         *,
         map: nav_msgs_msg_OccupancyGrid = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -192,7 +193,7 @@ class GetMap_Event(Message, metaclass=Metaclass_GetMap_Event):
         request: list[GetMap_Request] = DEFAULT,
         response: list[GetMap_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

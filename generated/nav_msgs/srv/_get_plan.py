@@ -12,6 +12,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -22,7 +23,7 @@ from nav_msgs.msg import Path as nav_msgs_msg_Path
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -68,7 +69,7 @@ class GetPlan_Request(Message, metaclass=Metaclass_GetPlan_Request):
         goal: geometry_msgs_msg_PoseStamped = DEFAULT,
         tolerance: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -141,7 +142,7 @@ class GetPlan_Response(Message, metaclass=Metaclass_GetPlan_Response):
         *,
         plan: nav_msgs_msg_Path = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -224,7 +225,7 @@ class GetPlan_Event(Message, metaclass=Metaclass_GetPlan_Event):
         request: list[GetPlan_Request] = DEFAULT,
         response: list[GetPlan_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

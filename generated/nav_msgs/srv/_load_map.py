@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     enum_view,
@@ -23,7 +24,7 @@ from nav_msgs.msg import OccupancyGrid as nav_msgs_msg_OccupancyGrid
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -55,7 +56,7 @@ class LoadMap_Request(Message, metaclass=Metaclass_LoadMap_Request):
         *,
         map_url: str = "",
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -160,7 +161,7 @@ class LoadMap_Response(Message, metaclass=Metaclass_LoadMap_Response):
         map: nav_msgs_msg_OccupancyGrid = DEFAULT,
         result: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -260,7 +261,7 @@ class LoadMap_Event(Message, metaclass=Metaclass_LoadMap_Event):
         request: list[LoadMap_Request] = DEFAULT,
         response: list[LoadMap_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

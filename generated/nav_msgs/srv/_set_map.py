@@ -12,6 +12,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -22,7 +23,7 @@ from nav_msgs.msg import OccupancyGrid as nav_msgs_msg_OccupancyGrid
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -59,7 +60,7 @@ class SetMap_Request(Message, metaclass=Metaclass_SetMap_Request):
         map: nav_msgs_msg_OccupancyGrid = DEFAULT,
         initial_pose: geometry_msgs_msg_PoseWithCovarianceStamped = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -139,7 +140,7 @@ class SetMap_Response(Message, metaclass=Metaclass_SetMap_Response):
         *,
         success: bool = False,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -222,7 +223,7 @@ class SetMap_Event(Message, metaclass=Metaclass_SetMap_Event):
         request: list[SetMap_Request] = DEFAULT,
         response: list[SetMap_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -10,6 +10,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -19,7 +20,7 @@ from rcl_interfaces.msg import ParameterValue as rcl_interfaces_msg_ParameterVal
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -62,7 +63,7 @@ class Parameter(Message, metaclass=Metaclass_Parameter):
         name: str = "",
         value: rcl_interfaces_msg_ParameterValue = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,14 +6,21 @@ RIHS01_52175dbfda6c51153101d33d2a9da05743f66f02d5ab2ca9ec4709b46b73d704
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from rcl_interfaces.msg import FloatingPointRange as rcl_interfaces_msg_FloatingPointRange
 from rcl_interfaces.msg import IntegerRange as rcl_interfaces_msg_IntegerRange
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -111,7 +118,7 @@ class ParameterDescriptor(Message, metaclass=Metaclass_ParameterDescriptor):
         floating_point_range: list[rcl_interfaces_msg_FloatingPointRange] = DEFAULT,
         integer_range: list[rcl_interfaces_msg_IntegerRange] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

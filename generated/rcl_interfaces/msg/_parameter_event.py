@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -20,7 +21,7 @@ from rcl_interfaces.msg import Parameter as rcl_interfaces_msg_Parameter
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -92,7 +93,7 @@ class ParameterEvent(Message, metaclass=Metaclass_ParameterEvent):
         changed_parameters: list[rcl_interfaces_msg_Parameter] = DEFAULT,
         deleted_parameters: list[rcl_interfaces_msg_Parameter] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,13 +6,20 @@ RIHS01_456f90915d72ef69379e702ef3ba2a115098ff677eab9c0080fa11239c6b147e
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from rcl_interfaces.msg import ParameterDescriptor as rcl_interfaces_msg_ParameterDescriptor
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -55,7 +62,7 @@ class ParameterEventDescriptors(Message, metaclass=Metaclass_ParameterEventDescr
         changed_parameters: list[rcl_interfaces_msg_ParameterDescriptor] = DEFAULT,
         deleted_parameters: list[rcl_interfaces_msg_ParameterDescriptor] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

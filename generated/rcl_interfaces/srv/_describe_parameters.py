@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from rcl_interfaces.msg import ParameterDescriptor as rcl_interfaces_msg_Paramet
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -50,7 +51,7 @@ class DescribeParameters_Request(Message, metaclass=Metaclass_DescribeParameters
         *,
         names: list[str] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -113,7 +114,7 @@ class DescribeParameters_Response(Message, metaclass=Metaclass_DescribeParameter
         *,
         descriptors: list[rcl_interfaces_msg_ParameterDescriptor] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -196,7 +197,7 @@ class DescribeParameters_Event(Message, metaclass=Metaclass_DescribeParameters_E
         request: list[DescribeParameters_Request] = DEFAULT,
         response: list[DescribeParameters_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from rcl_interfaces.msg import LoggerLevel as rcl_interfaces_msg_LoggerLevel
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -53,7 +54,7 @@ class GetLoggerLevels_Request(Message, metaclass=Metaclass_GetLoggerLevels_Reque
         *,
         names: list[str] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -116,7 +117,7 @@ class GetLoggerLevels_Response(Message, metaclass=Metaclass_GetLoggerLevels_Resp
         *,
         levels: list[rcl_interfaces_msg_LoggerLevel] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -199,7 +200,7 @@ class GetLoggerLevels_Event(Message, metaclass=Metaclass_GetLoggerLevels_Event):
         request: list[GetLoggerLevels_Request] = DEFAULT,
         response: list[GetLoggerLevels_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

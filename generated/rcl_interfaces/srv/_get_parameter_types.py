@@ -6,6 +6,7 @@ RIHS01_da199c878688b3e530bdfe3ca8f74cb9fa0c303101e980a9e8f260e25e1c80ca
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -25,6 +26,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -34,8 +36,7 @@ from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventIn
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import UInt8Array
 
@@ -66,7 +67,7 @@ class GetParameterTypes_Request(Message, metaclass=Metaclass_GetParameterTypes_R
         *,
         names: list[str] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -123,7 +124,7 @@ class GetParameterTypes_Response(Message, metaclass=Metaclass_GetParameterTypes_
         *,
         types: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -238,7 +239,7 @@ class GetParameterTypes_Event(Message, metaclass=Metaclass_GetParameterTypes_Eve
         request: list[GetParameterTypes_Request] = DEFAULT,
         response: list[GetParameterTypes_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

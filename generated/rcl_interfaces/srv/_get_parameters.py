@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from rcl_interfaces.msg import ParameterValue as rcl_interfaces_msg_ParameterVal
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -50,7 +51,7 @@ class GetParameters_Request(Message, metaclass=Metaclass_GetParameters_Request):
         *,
         names: list[str] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -113,7 +114,7 @@ class GetParameters_Response(Message, metaclass=Metaclass_GetParameters_Response
         *,
         values: list[rcl_interfaces_msg_ParameterValue] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -208,7 +209,7 @@ class GetParameters_Event(Message, metaclass=Metaclass_GetParameters_Event):
         request: list[GetParameters_Request] = DEFAULT,
         response: list[GetParameters_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from rcl_interfaces.msg import ListParametersResult as rcl_interfaces_msg_ListPa
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -67,7 +68,7 @@ class ListParameters_Request(Message, metaclass=Metaclass_ListParameters_Request
         prefixes: list[str] = DEFAULT,
         depth: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -132,7 +133,7 @@ class ListParameters_Response(Message, metaclass=Metaclass_ListParameters_Respon
         *,
         result: rcl_interfaces_msg_ListParametersResult = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -215,7 +216,7 @@ class ListParameters_Event(Message, metaclass=Metaclass_ListParameters_Event):
         request: list[ListParameters_Request] = DEFAULT,
         response: list[ListParameters_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -22,7 +23,7 @@ from rcl_interfaces.msg import SetLoggerLevelsResult as rcl_interfaces_msg_SetLo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -51,7 +52,7 @@ class SetLoggerLevels_Request(Message, metaclass=Metaclass_SetLoggerLevels_Reque
         *,
         levels: list[rcl_interfaces_msg_LoggerLevel] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -114,7 +115,7 @@ class SetLoggerLevels_Response(Message, metaclass=Metaclass_SetLoggerLevels_Resp
         *,
         results: list[rcl_interfaces_msg_SetLoggerLevelsResult] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -197,7 +198,7 @@ class SetLoggerLevels_Event(Message, metaclass=Metaclass_SetLoggerLevels_Event):
         request: list[SetLoggerLevels_Request] = DEFAULT,
         response: list[SetLoggerLevels_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

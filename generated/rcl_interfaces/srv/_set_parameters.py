@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -22,7 +23,7 @@ from rcl_interfaces.msg import SetParametersResult as rcl_interfaces_msg_SetPara
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -51,7 +52,7 @@ class SetParameters_Request(Message, metaclass=Metaclass_SetParameters_Request):
         *,
         parameters: list[rcl_interfaces_msg_Parameter] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -126,7 +127,7 @@ class SetParameters_Response(Message, metaclass=Metaclass_SetParameters_Response
         *,
         results: list[rcl_interfaces_msg_SetParametersResult] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -209,7 +210,7 @@ class SetParameters_Event(Message, metaclass=Metaclass_SetParameters_Event):
         request: list[SetParameters_Request] = DEFAULT,
         response: list[SetParameters_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,6 +6,7 @@ RIHS01_b3dfd68ff46c9d56c80fd3bd4ed22c7a4ddce8c8348f2f59c299e73118e7e275
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable, Sequence
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -22,6 +23,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -33,8 +35,7 @@ from sensor_msgs.msg import RegionOfInterest as sensor_msgs_msg_RegionOfInterest
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     import numpy
     from ifgen_runtime.views import Float64Array
@@ -138,14 +139,14 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         width: int = 0,
         distortion_model: str = "",
         d: Iterable[float] | arrays.Buffer = DEFAULT,
-        k: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        r: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        p: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        k: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        r: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        p: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         binning_x: int = 0,
         binning_y: int = 0,
         roi: sensor_msgs_msg_RegionOfInterest = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -192,7 +193,7 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         return self._k
 
     @k.setter
-    def k(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def k(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._k = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -209,7 +210,7 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         return self._r
 
     @r.setter
-    def r(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def r(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._r = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -229,7 +230,7 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
         return self._p
 
     @p.setter
-    def p(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def p(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._p = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:

@@ -6,6 +6,7 @@ RIHS01_15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -23,6 +24,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -32,8 +34,7 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import UInt8Array
 
@@ -82,7 +83,7 @@ class CompressedImage(Message, metaclass=Metaclass_CompressedImage):
         format: str = "",
         data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

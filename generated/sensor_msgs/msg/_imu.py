@@ -5,6 +5,8 @@ RIHS01_7d9a00ff131080897a5ec7e26e315954b8eae3353c3f995c55faf71574000b5b
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from geometry_msgs.msg import Quaternion as geometry_msgs_msg_Quaternion
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 from ifgen_runtime.copying import (
@@ -20,6 +22,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -29,8 +32,7 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
     import numpy
     from numpy.typing import NDArray
@@ -99,13 +101,13 @@ class Imu(Message, metaclass=Metaclass_Imu):
         *,
         header: std_msgs_msg_Header = DEFAULT,
         orientation: geometry_msgs_msg_Quaternion = DEFAULT,
-        orientation_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        orientation_covariance: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         angular_velocity: geometry_msgs_msg_Vector3 = DEFAULT,
-        angular_velocity_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        angular_velocity_covariance: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         linear_acceleration: geometry_msgs_msg_Vector3 = DEFAULT,
-        linear_acceleration_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        linear_acceleration_covariance: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -131,7 +133,7 @@ class Imu(Message, metaclass=Metaclass_Imu):
         return self._orientation_covariance
 
     @orientation_covariance.setter
-    def orientation_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def orientation_covariance(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._orientation_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -144,7 +146,7 @@ class Imu(Message, metaclass=Metaclass_Imu):
         return self._angular_velocity_covariance
 
     @angular_velocity_covariance.setter
-    def angular_velocity_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def angular_velocity_covariance(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._angular_velocity_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -157,7 +159,7 @@ class Imu(Message, metaclass=Metaclass_Imu):
         return self._linear_acceleration_covariance
 
     @linear_acceleration_covariance.setter
-    def linear_acceleration_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def linear_acceleration_covariance(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._linear_acceleration_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:

@@ -6,6 +6,7 @@ RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -23,6 +24,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -32,8 +34,7 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import Float64Array
 
@@ -87,7 +88,7 @@ class JointState(Message, metaclass=Metaclass_JointState):
         velocity: Iterable[float] | arrays.Buffer = DEFAULT,
         effort: Iterable[float] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

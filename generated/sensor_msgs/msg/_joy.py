@@ -6,6 +6,7 @@ RIHS01_0d356c79cad3401e35ffeb75a96a96e08be3ef896b8b83841d73e890989372c5
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -23,6 +24,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -32,8 +34,7 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import Float32Array, Int32Array
 
@@ -75,7 +76,7 @@ class Joy(Message, metaclass=Metaclass_Joy):
         axes: Iterable[float] | arrays.Buffer = DEFAULT,
         buttons: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

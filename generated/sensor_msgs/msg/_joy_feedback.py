@@ -6,12 +6,19 @@ RIHS01_231dd362f71d6fc08272770d07120ad5fe5874ce2dbac70109b28986834290cd
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_other, new_object, repr_name
-from ifgen_runtime.message import Message, MessageMeta, checks_by_default, enum_view, initialize_checked
+from ifgen_runtime.message import (
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    enum_view,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
 _check_fields = checks_by_default()
 
@@ -83,7 +90,7 @@ class JoyFeedback(Message, metaclass=Metaclass_JoyFeedback):
         id: int = 0,
         intensity: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

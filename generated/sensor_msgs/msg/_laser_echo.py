@@ -6,6 +6,7 @@ RIHS01_0fbc05a0db7d37fe52c0f0375356db55da0046f7ef5bd27ca6b34bd0582bc952
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -20,6 +21,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     initialize_checked,
     note_field,
@@ -27,8 +29,7 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import Float32Array
 
@@ -58,7 +59,7 @@ class LaserEcho(Message, metaclass=Metaclass_LaserEcho):
         *,
         echoes: Iterable[float] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

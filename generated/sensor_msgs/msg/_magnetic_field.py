@@ -5,6 +5,8 @@ RIHS01_e80f32f56a20486c9923008fc1a1db07bbb273cbbf6a5b3bfa00835ee00e4dff
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -19,6 +21,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -28,8 +31,7 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
     import numpy
     from numpy.typing import NDArray
@@ -80,9 +82,9 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
         *,
         header: std_msgs_msg_Header = DEFAULT,
         magnetic_field: geometry_msgs_msg_Vector3 = DEFAULT,
-        magnetic_field_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        magnetic_field_covariance: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -104,7 +106,7 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
         return self._magnetic_field_covariance
 
     @magnetic_field_covariance.setter
-    def magnetic_field_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def magnetic_field_covariance(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._magnetic_field_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:

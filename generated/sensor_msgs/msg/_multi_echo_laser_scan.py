@@ -10,6 +10,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -20,7 +21,7 @@ from sensor_msgs.msg import LaserEcho as sensor_msgs_msg_LaserEcho
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -137,7 +138,7 @@ class MultiEchoLaserScan(Message, metaclass=Metaclass_MultiEchoLaserScan):
         ranges: list[sensor_msgs_msg_LaserEcho] = DEFAULT,
         intensities: list[sensor_msgs_msg_LaserEcho] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -5,6 +5,8 @@ RIHS01_62223ab3fe210a15976021da7afddc9e200dc9ec75231c1b6a557fc598a65404
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ifgen_runtime.copying import (
     ITERABLES,
     arrays,
@@ -18,6 +20,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -29,8 +32,7 @@ from sensor_msgs.msg import NavSatStatus as sensor_msgs_msg_NavSatStatus
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
     import numpy
     from numpy.typing import NDArray
@@ -125,10 +127,10 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
         latitude: float = 0.0,
         longitude: float = 0.0,
         altitude: float = 0.0,
-        position_covariance: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        position_covariance: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         position_covariance_type: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -155,7 +157,7 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
         return self._position_covariance
 
     @position_covariance.setter
-    def position_covariance(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def position_covariance(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._position_covariance = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:

@@ -6,12 +6,19 @@ RIHS01_d1ed3befa628e09571bd273b888ba1c1fd187c9a5e0006b385d7e5e9095a3204
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_other, new_object, repr_name
-from ifgen_runtime.message import Message, MessageMeta, checks_by_default, enum_view, initialize_checked
+from ifgen_runtime.message import (
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    enum_view,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
 _check_fields = checks_by_default()
 
@@ -117,7 +124,7 @@ class NavSatStatus(Message, metaclass=Metaclass_NavSatStatus):
         status: int = -2,
         service: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from sensor_msgs.msg import ChannelFloat32 as sensor_msgs_msg_ChannelFloat32
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -72,7 +73,7 @@ class PointCloud(Message, metaclass=Metaclass_PointCloud):
         points: list[geometry_msgs_msg_Point32] = DEFAULT,
         channels: list[sensor_msgs_msg_ChannelFloat32] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,11 +6,11 @@ RIHS01_5c6a4750728c2bcfbbf7037225b20b02d4429634732146b742dee1726637ef01
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_other, new_object, repr_name
-from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
 _check_fields = checks_by_default()
 
@@ -87,7 +87,7 @@ class PointField(Message, metaclass=Metaclass_PointField):
         datatype: int = 0,
         count: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

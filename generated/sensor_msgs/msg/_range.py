@@ -20,6 +20,7 @@ from ifgen_runtime.copying import repr_name as repr_name_
 from ifgen_runtime.message import DEFAULT as DEFAULT_
 from ifgen_runtime.message import Message as Message_
 from ifgen_runtime.message import MessageMeta as MessageMeta_
+from ifgen_runtime.message import NoSuchField as NoSuchField_
 from ifgen_runtime.message import checks_by_default as checks_by_default_
 from ifgen_runtime.message import default_of as default_of_
 from ifgen_runtime.message import initialize_checked as initialize_checked_
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from typing import Any as Any_
     from typing import ClassVar as ClassVar_
     from typing import Final as Final_
-    from typing import Never as Never_
 
 _check_fields = checks_by_default_()
 
@@ -124,7 +124,7 @@ class Range(Message_, metaclass=Metaclass_Range):
         range: float_ = 0.0,
         variance: float_ = 0.0,
         check_fields: bool_ = _check_fields,
-        **_unknown: Never_,
+        **_unknown: NoSuchField_,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked_(self, locals_())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from sensor_msgs.msg import CameraInfo as sensor_msgs_msg_CameraInfo
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -50,7 +51,7 @@ class SetCameraInfo_Request(Message, metaclass=Metaclass_SetCameraInfo_Request):
         *,
         camera_info: sensor_msgs_msg_CameraInfo = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -136,7 +137,7 @@ class SetCameraInfo_Response(Message, metaclass=Metaclass_SetCameraInfo_Response
         success: bool = False,
         status_message: str = "",
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -224,7 +225,7 @@ class SetCameraInfo_Event(Message, metaclass=Metaclass_SetCameraInfo_Event):
         request: list[SetCameraInfo_Request] = DEFAULT,
         response: list[SetCameraInfo_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

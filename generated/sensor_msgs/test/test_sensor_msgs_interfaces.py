@@ -18,8 +18,8 @@ from typing import Any, TypeAlias
 
 import pytest
 
-pytest.importorskip("hypothesis", reason="it is not installed: pip install 'ifgen-ros[test]'")
-pytest.importorskip("rclpy", reason="source ROS, or use ifgen's pytest --transport local")
+pytest.importorskip("hypothesis", reason="ifgen: hypothesis is missing, of the extra `test`")
+pytest.importorskip("rclpy", reason="ifgen: there is no rclpy: source ROS, or add --transport local")
 
 # The package and those that it needs are around this folder, if they are not installed.
 sys.path.append(str(Path(__file__).resolve().parents[2]))

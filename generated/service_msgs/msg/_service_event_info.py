@@ -5,6 +5,8 @@ RIHS01_41bcbbe07a75c9b52bc96bfd5c24d7f0fc0a08c0cb7921b3373c5732345a6f45
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from builtin_interfaces.msg import Time as builtin_interfaces_msg_Time
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -19,6 +21,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -27,8 +30,7 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Final, Never
+    from typing import Any, ClassVar, Final
 
     import numpy
     from numpy.typing import NDArray
@@ -100,10 +102,10 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
         *,
         event_type: int = 0,
         stamp: builtin_interfaces_msg_Time = DEFAULT,
-        client_gid: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        client_gid: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         sequence_number: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -127,7 +129,7 @@ class ServiceEventInfo(Message, metaclass=Metaclass_ServiceEventInfo):
         return self._client_gid
 
     @client_gid.setter
-    def client_gid(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def client_gid(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._client_gid = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:

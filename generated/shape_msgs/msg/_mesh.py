@@ -7,13 +7,20 @@ from __future__ import annotations
 
 from geometry_msgs.msg import Point as geometry_msgs_msg_Point
 from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from shape_msgs.msg import MeshTriangle as shape_msgs_msg_MeshTriangle
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -53,7 +60,7 @@ class Mesh(Message, metaclass=Metaclass_Mesh):
         triangles: list[shape_msgs_msg_MeshTriangle] = DEFAULT,
         vertices: list[geometry_msgs_msg_Point] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -5,11 +5,14 @@ RIHS01_618e5c073eeb729e433ef6226e72c01d995c459fb7d76348c9700409a5020bd0
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ifgen_runtime.copying import ITERABLES, arrays, copied_array, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     initialize_checked,
     note_field,
@@ -17,8 +20,7 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
     import numpy
     from numpy.typing import NDArray
@@ -47,9 +49,9 @@ class MeshTriangle(Message, metaclass=Metaclass_MeshTriangle):
     def __init__(
         self,
         *,
-        vertex_indices: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        vertex_indices: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -69,7 +71,7 @@ class MeshTriangle(Message, metaclass=Metaclass_MeshTriangle):
         return self._vertex_indices
 
     @vertex_indices.setter
-    def vertex_indices(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def vertex_indices(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._vertex_indices = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:

@@ -5,11 +5,14 @@ RIHS01_dfbfe8314689c850615d4a727af017e9aa86c10e369a606c8c851ef8f16c58c8
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ifgen_runtime.copying import ITERABLES, arrays, copied_array, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     initialize_checked,
     note_field,
@@ -17,8 +20,7 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
     import numpy
     from numpy.typing import NDArray
@@ -47,9 +49,9 @@ class Plane(Message, metaclass=Metaclass_Plane):
     def __init__(
         self,
         *,
-        coef: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        coef: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -69,7 +71,7 @@ class Plane(Message, metaclass=Metaclass_Plane):
         return self._coef
 
     @coef.setter
-    def coef(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def coef(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._coef = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:

@@ -6,6 +6,7 @@ RIHS01_2802a15190aadc3f496584df4b0b4c5824d8a0b31aaef839faa75bc34dda38ac
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from geometry_msgs.msg import Polygon as geometry_msgs_msg_Polygon
 from ifgen_runtime.copying import (
@@ -23,6 +24,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -31,8 +33,7 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
     from ifgen_runtime.views import Float64Array
 
@@ -123,7 +124,7 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
         dimensions: Iterable[float] | arrays.Buffer = DEFAULT,
         polygon: geometry_msgs_msg_Polygon = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

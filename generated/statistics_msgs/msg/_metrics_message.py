@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -20,7 +21,7 @@ from statistics_msgs.msg import StatisticDataPoint as statistics_msgs_msg_Statis
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -102,7 +103,7 @@ class MetricsMessage(Message, metaclass=Metaclass_MetricsMessage):
         window_stop: builtin_interfaces_msg_Time = DEFAULT,
         statistics: list[statistics_msgs_msg_StatisticDataPoint] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,11 +6,11 @@ RIHS01_77a7a5b9ae477306097665106e0413ba74440245b1f3d0c6d6405fe5c7813fe8
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_other, new_object, repr_name
-from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -71,7 +71,7 @@ class ColorRGBA(Message, metaclass=Metaclass_ColorRGBA):
         b: float = 0.0,
         a: float = 0.0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,6 +6,7 @@ RIHS01_f21998d4b492abd63330765d75d5831238d400740386f651f13a872a4d2188db
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -23,6 +24,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -33,8 +35,7 @@ from std_msgs.msg import MultiArrayLayout as std_msgs_msg_MultiArrayLayout
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import Int8Array
 
@@ -76,7 +77,7 @@ class Int8MultiArray(Message, metaclass=Metaclass_Int8MultiArray):
         layout: std_msgs_msg_MultiArrayLayout = DEFAULT,
         data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,6 +6,7 @@ RIHS01_94fe73428ec63baecc774f8fb82406123e9291cf728f1b7c91caf5335129492b
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -23,6 +24,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -33,8 +35,7 @@ from std_msgs.msg import MultiArrayLayout as std_msgs_msg_MultiArrayLayout
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import UInt16Array
 
@@ -76,7 +77,7 @@ class UInt16MultiArray(Message, metaclass=Metaclass_UInt16MultiArray):
         layout: std_msgs_msg_MultiArrayLayout = DEFAULT,
         data: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,6 +6,7 @@ RIHS01_be9273e3557225044b4a040811112491f7079326e3a573f83258b0b4c30bd069
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from action_msgs.msg import GoalStatusArray as action_msgs_msg_GoalStatusArray
 from action_msgs.srv import CancelGoal as action_msgs_srv_CancelGoal
@@ -28,6 +29,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -38,8 +40,7 @@ from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import Int32Array
 
@@ -73,7 +74,7 @@ class Fibonacci_Goal(Message, metaclass=Metaclass_Fibonacci_Goal):
         *,
         order: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -130,7 +131,7 @@ class Fibonacci_Result(Message, metaclass=Metaclass_Fibonacci_Result):
         *,
         sequence: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -219,7 +220,7 @@ class Fibonacci_Feedback(Message, metaclass=Metaclass_Fibonacci_Feedback):
         *,
         sequence: Iterable[int] | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -325,7 +326,7 @@ class Fibonacci_SendGoal_Request(Message, metaclass=Metaclass_Fibonacci_SendGoal
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         goal: Fibonacci_Goal = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -404,7 +405,7 @@ class Fibonacci_SendGoal_Response(Message, metaclass=Metaclass_Fibonacci_SendGoa
         accepted: bool = False,
         stamp: builtin_interfaces_msg_Time = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -492,7 +493,7 @@ class Fibonacci_SendGoal_Event(Message, metaclass=Metaclass_Fibonacci_SendGoal_E
         request: list[Fibonacci_SendGoal_Request] = DEFAULT,
         response: list[Fibonacci_SendGoal_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -565,7 +566,7 @@ class Fibonacci_GetResult_Request(Message, metaclass=Metaclass_Fibonacci_GetResu
         *,
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -639,7 +640,7 @@ class Fibonacci_GetResult_Response(Message, metaclass=Metaclass_Fibonacci_GetRes
         status: int = 0,
         result: Fibonacci_Result = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -739,7 +740,7 @@ class Fibonacci_GetResult_Event(Message, metaclass=Metaclass_Fibonacci_GetResult
         request: list[Fibonacci_GetResult_Request] = DEFAULT,
         response: list[Fibonacci_GetResult_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -835,7 +836,7 @@ class Fibonacci_FeedbackMessage(Message, metaclass=Metaclass_Fibonacci_FeedbackM
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         feedback: Fibonacci_Feedback = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

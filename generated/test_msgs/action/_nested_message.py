@@ -14,6 +14,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -26,7 +27,7 @@ from test_msgs.msg import Builtins as test_msgs_msg_Builtins
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -71,7 +72,7 @@ class NestedMessage_Goal(Message, metaclass=Metaclass_NestedMessage_Goal):
         nested_field: test_msgs_msg_BasicTypes = DEFAULT,
         nested_different_pkg: builtin_interfaces_msg_Time = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -155,7 +156,7 @@ class NestedMessage_Result(Message, metaclass=Metaclass_NestedMessage_Result):
         nested_field: test_msgs_msg_BasicTypes = DEFAULT,
         nested_different_pkg: builtin_interfaces_msg_Time = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -239,7 +240,7 @@ class NestedMessage_Feedback(Message, metaclass=Metaclass_NestedMessage_Feedback
         nested_field: test_msgs_msg_BasicTypes = DEFAULT,
         nested_different_pkg: builtin_interfaces_msg_Time = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -323,7 +324,7 @@ class NestedMessage_SendGoal_Request(Message, metaclass=Metaclass_NestedMessage_
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         goal: NestedMessage_Goal = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -402,7 +403,7 @@ class NestedMessage_SendGoal_Response(Message, metaclass=Metaclass_NestedMessage
         accepted: bool = False,
         stamp: builtin_interfaces_msg_Time = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -490,7 +491,7 @@ class NestedMessage_SendGoal_Event(Message, metaclass=Metaclass_NestedMessage_Se
         request: list[NestedMessage_SendGoal_Request] = DEFAULT,
         response: list[NestedMessage_SendGoal_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -563,7 +564,7 @@ class NestedMessage_GetResult_Request(Message, metaclass=Metaclass_NestedMessage
         *,
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -637,7 +638,7 @@ class NestedMessage_GetResult_Response(Message, metaclass=Metaclass_NestedMessag
         status: int = 0,
         result: NestedMessage_Result = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -725,7 +726,7 @@ class NestedMessage_GetResult_Event(Message, metaclass=Metaclass_NestedMessage_G
         request: list[NestedMessage_GetResult_Request] = DEFAULT,
         response: list[NestedMessage_GetResult_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -809,7 +810,7 @@ class NestedMessage_FeedbackMessage(Message, metaclass=Metaclass_NestedMessage_F
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         feedback: NestedMessage_Feedback = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

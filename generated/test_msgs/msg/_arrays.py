@@ -5,6 +5,8 @@ RIHS01_8a321b80dae8c44dfd1ce558eaf1b1cd5ebbe5950863ed675836535511a7f91a
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ifgen_runtime.copying import (
     ITERABLES,
     arrays,
@@ -19,6 +21,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -32,8 +35,7 @@ from test_msgs.msg import Defaults as test_msgs_msg_Defaults
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
     import numpy
     from numpy.typing import NDArray
@@ -189,38 +191,38 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         *,
         bool_values: list[bool] = DEFAULT,
         byte_values: list[bytes] = DEFAULT,
-        char_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float32_values: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float64_values: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int8_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint8_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int16_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint16_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int32_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint32_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int64_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint64_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        char_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float32_values: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float64_values: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int8_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint8_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int16_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint16_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int32_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint32_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int64_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint64_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         string_values: list[str] = DEFAULT,
         basic_types_values: list[test_msgs_msg_BasicTypes] = DEFAULT,
         constants_values: list[test_msgs_msg_Constants] = DEFAULT,
         defaults_values: list[test_msgs_msg_Defaults] = DEFAULT,
         bool_values_default: list[bool] = DEFAULT,
         byte_values_default: list[bytes] = DEFAULT,
-        char_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float32_values_default: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float64_values_default: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int8_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint8_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int16_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint16_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int32_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint32_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int64_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint64_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        char_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float32_values_default: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float64_values_default: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int8_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint8_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int16_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint16_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int32_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint32_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int64_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint64_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         string_values_default: list[str] = DEFAULT,
         alignment_check: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -268,7 +270,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._char_values
 
     @char_values.setter
-    def char_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def char_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._char_values = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -281,7 +283,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._float32_values
 
     @float32_values.setter
-    def float32_values(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float32_values(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float32_values = numpy.array(value, numpy.float32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, value)
         except Exception:
@@ -294,7 +296,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._float64_values
 
     @float64_values.setter
-    def float64_values(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float64_values(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float64_values = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -307,7 +309,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int8_values
 
     @int8_values.setter
-    def int8_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int8_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int8_values = numpy.array(value, numpy.int8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, value)
         except Exception:
@@ -320,7 +322,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint8_values
 
     @uint8_values.setter
-    def uint8_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint8_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint8_values = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -333,7 +335,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int16_values
 
     @int16_values.setter
-    def int16_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int16_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int16_values = numpy.array(value, numpy.int16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, value)
         except Exception:
@@ -346,7 +348,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint16_values
 
     @uint16_values.setter
-    def uint16_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint16_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint16_values = numpy.array(value, numpy.uint16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, value)
         except Exception:
@@ -359,7 +361,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int32_values
 
     @int32_values.setter
-    def int32_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int32_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int32_values = numpy.array(value, numpy.int32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, value)
         except Exception:
@@ -372,7 +374,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint32_values
 
     @uint32_values.setter
-    def uint32_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint32_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint32_values = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
@@ -385,7 +387,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int64_values
 
     @int64_values.setter
-    def int64_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int64_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int64_values = numpy.array(value, numpy.int64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, value)
         except Exception:
@@ -398,7 +400,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint64_values
 
     @uint64_values.setter
-    def uint64_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint64_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint64_values = numpy.array(value, numpy.uint64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, value)
         except Exception:
@@ -411,7 +413,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._char_values_default
 
     @char_values_default.setter
-    def char_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def char_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._char_values_default = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -424,7 +426,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._float32_values_default
 
     @float32_values_default.setter
-    def float32_values_default(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float32_values_default(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float32_values_default = numpy.array(value, numpy.float32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, value)
         except Exception:
@@ -437,7 +439,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._float64_values_default
 
     @float64_values_default.setter
-    def float64_values_default(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float64_values_default(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float64_values_default = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -450,7 +452,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int8_values_default
 
     @int8_values_default.setter
-    def int8_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int8_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int8_values_default = numpy.array(value, numpy.int8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, value)
         except Exception:
@@ -463,7 +465,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint8_values_default
 
     @uint8_values_default.setter
-    def uint8_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint8_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint8_values_default = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -476,7 +478,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int16_values_default
 
     @int16_values_default.setter
-    def int16_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int16_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int16_values_default = numpy.array(value, numpy.int16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, value)
         except Exception:
@@ -489,7 +491,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint16_values_default
 
     @uint16_values_default.setter
-    def uint16_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint16_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint16_values_default = numpy.array(value, numpy.uint16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, value)
         except Exception:
@@ -502,7 +504,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int32_values_default
 
     @int32_values_default.setter
-    def int32_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int32_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int32_values_default = numpy.array(value, numpy.int32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, value)
         except Exception:
@@ -515,7 +517,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint32_values_default
 
     @uint32_values_default.setter
-    def uint32_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint32_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint32_values_default = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
@@ -528,7 +530,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._int64_values_default
 
     @int64_values_default.setter
-    def int64_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int64_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int64_values_default = numpy.array(value, numpy.int64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, value)
         except Exception:
@@ -541,7 +543,7 @@ class Arrays(Message, metaclass=Metaclass_Arrays):
         return self._uint64_values_default
 
     @uint64_values_default.setter
-    def uint64_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint64_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint64_values_default = numpy.array(value, numpy.uint64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, value)
         except Exception:

@@ -6,11 +6,11 @@ RIHS01_6587ceacfdb97a895b60774d021011c64f8c7299f53322404af4036dec6142dc
 from __future__ import annotations
 
 from ifgen_runtime.copying import new_object, repr_name
-from ifgen_runtime.message import Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_default, initialize_checked
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -33,7 +33,7 @@ class Empty(Message, metaclass=Metaclass_Empty):
         self,
         *,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

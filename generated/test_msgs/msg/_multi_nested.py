@@ -10,6 +10,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from test_msgs.msg import UnboundedSequences as test_msgs_msg_UnboundedSequences
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -100,7 +101,7 @@ class MultiNested(Message, metaclass=Metaclass_MultiNested):
         unbounded_sequence_of_bounded_sequences: list[test_msgs_msg_BoundedSequences] = DEFAULT,
         unbounded_sequence_of_unbounded_sequences: list[test_msgs_msg_UnboundedSequences] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,6 +6,7 @@ RIHS01_a63975514293a2c6b24a807675bcbd9180bda1995dd4ee10f2698d45ff77db05
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from ifgen_runtime.copying import (
     ITERABLES,
@@ -24,6 +25,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     initialize_checked,
     mutable_default,
@@ -36,8 +38,7 @@ from test_msgs.msg import Defaults as test_msgs_msg_Defaults
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import (
         Float32Array,
@@ -232,7 +233,7 @@ class UnboundedSequences(Message, metaclass=Metaclass_UnboundedSequences):
         string_values_default: list[str] = DEFAULT,
         alignment_check: int = 0,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -5,6 +5,8 @@ RIHS01_ae66e13b3ad1520bcd9fa5751c4a4521222bf27c2f845d79de0c76e4cbb41080
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ifgen_runtime.copying import (
     ITERABLES,
     arrays,
@@ -20,6 +22,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -34,8 +37,7 @@ from test_msgs.msg import Defaults as test_msgs_msg_Defaults
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     import numpy
     from numpy.typing import NDArray
@@ -183,37 +185,37 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         *,
         bool_values: list[bool] = DEFAULT,
         byte_values: list[bytes] = DEFAULT,
-        char_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float32_values: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float64_values: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int8_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint8_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int16_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint16_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int32_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint32_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int64_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint64_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        char_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float32_values: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float64_values: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int8_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint8_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int16_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint16_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int32_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint32_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int64_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint64_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         string_values: list[str] = DEFAULT,
         basic_types_values: list[test_msgs_msg_BasicTypes] = DEFAULT,
         constants_values: list[test_msgs_msg_Constants] = DEFAULT,
         defaults_values: list[test_msgs_msg_Defaults] = DEFAULT,
         bool_values_default: list[bool] = DEFAULT,
         byte_values_default: list[bytes] = DEFAULT,
-        char_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float32_values_default: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float64_values_default: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int8_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint8_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int16_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint16_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int32_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint32_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int64_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint64_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        char_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float32_values_default: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float64_values_default: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int8_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint8_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int16_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint16_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int32_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint32_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int64_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint64_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         string_values_default: list[str] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -260,7 +262,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._char_values
 
     @char_values.setter
-    def char_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def char_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._char_values = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -273,7 +275,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._float32_values
 
     @float32_values.setter
-    def float32_values(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float32_values(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float32_values = numpy.array(value, numpy.float32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, value)
         except Exception:
@@ -286,7 +288,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._float64_values
 
     @float64_values.setter
-    def float64_values(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float64_values(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float64_values = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -299,7 +301,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._int8_values
 
     @int8_values.setter
-    def int8_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int8_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int8_values = numpy.array(value, numpy.int8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, value)
         except Exception:
@@ -312,7 +314,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._uint8_values
 
     @uint8_values.setter
-    def uint8_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint8_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint8_values = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -325,7 +327,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._int16_values
 
     @int16_values.setter
-    def int16_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int16_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int16_values = numpy.array(value, numpy.int16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, value)
         except Exception:
@@ -338,7 +340,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._uint16_values
 
     @uint16_values.setter
-    def uint16_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint16_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint16_values = numpy.array(value, numpy.uint16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, value)
         except Exception:
@@ -351,7 +353,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._int32_values
 
     @int32_values.setter
-    def int32_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int32_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int32_values = numpy.array(value, numpy.int32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, value)
         except Exception:
@@ -364,7 +366,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._uint32_values
 
     @uint32_values.setter
-    def uint32_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint32_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint32_values = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
@@ -377,7 +379,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._int64_values
 
     @int64_values.setter
-    def int64_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int64_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int64_values = numpy.array(value, numpy.int64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, value)
         except Exception:
@@ -390,7 +392,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._uint64_values
 
     @uint64_values.setter
-    def uint64_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint64_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint64_values = numpy.array(value, numpy.uint64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, value)
         except Exception:
@@ -403,7 +405,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._char_values_default
 
     @char_values_default.setter
-    def char_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def char_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._char_values_default = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -416,7 +418,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._float32_values_default
 
     @float32_values_default.setter
-    def float32_values_default(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float32_values_default(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float32_values_default = numpy.array(value, numpy.float32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, value)
         except Exception:
@@ -429,7 +431,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._float64_values_default
 
     @float64_values_default.setter
-    def float64_values_default(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float64_values_default(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float64_values_default = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -442,7 +444,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._int8_values_default
 
     @int8_values_default.setter
-    def int8_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int8_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int8_values_default = numpy.array(value, numpy.int8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, value)
         except Exception:
@@ -455,7 +457,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._uint8_values_default
 
     @uint8_values_default.setter
-    def uint8_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint8_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint8_values_default = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -468,7 +470,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._int16_values_default
 
     @int16_values_default.setter
-    def int16_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int16_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int16_values_default = numpy.array(value, numpy.int16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, value)
         except Exception:
@@ -481,7 +483,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._uint16_values_default
 
     @uint16_values_default.setter
-    def uint16_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint16_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint16_values_default = numpy.array(value, numpy.uint16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, value)
         except Exception:
@@ -494,7 +496,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._int32_values_default
 
     @int32_values_default.setter
-    def int32_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int32_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int32_values_default = numpy.array(value, numpy.int32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, value)
         except Exception:
@@ -507,7 +509,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._uint32_values_default
 
     @uint32_values_default.setter
-    def uint32_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint32_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint32_values_default = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
@@ -520,7 +522,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._int64_values_default
 
     @int64_values_default.setter
-    def int64_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int64_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int64_values_default = numpy.array(value, numpy.int64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, value)
         except Exception:
@@ -533,7 +535,7 @@ class Arrays_Request(Message, metaclass=Metaclass_Arrays_Request):
         return self._uint64_values_default
 
     @uint64_values_default.setter
-    def uint64_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint64_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint64_values_default = numpy.array(value, numpy.uint64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, value)
         except Exception:
@@ -827,37 +829,37 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         *,
         bool_values: list[bool] = DEFAULT,
         byte_values: list[bytes] = DEFAULT,
-        char_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float32_values: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float64_values: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int8_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint8_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int16_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint16_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int32_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint32_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int64_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint64_values: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        char_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float32_values: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float64_values: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int8_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint8_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int16_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint16_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int32_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint32_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int64_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint64_values: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         string_values: list[str] = DEFAULT,
         basic_types_values: list[test_msgs_msg_BasicTypes] = DEFAULT,
         constants_values: list[test_msgs_msg_Constants] = DEFAULT,
         defaults_values: list[test_msgs_msg_Defaults] = DEFAULT,
         bool_values_default: list[bool] = DEFAULT,
         byte_values_default: list[bytes] = DEFAULT,
-        char_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float32_values_default: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        float64_values_default: Sequence[float] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int8_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint8_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int16_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint16_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int32_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint32_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        int64_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
-        uint64_values_default: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        char_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float32_values_default: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        float64_values_default: Sequence[float] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int8_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint8_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int16_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint16_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int32_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint32_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        int64_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
+        uint64_values_default: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         string_values_default: list[str] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -904,7 +906,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._char_values
 
     @char_values.setter
-    def char_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def char_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._char_values = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -917,7 +919,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._float32_values
 
     @float32_values.setter
-    def float32_values(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float32_values(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float32_values = numpy.array(value, numpy.float32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, value)
         except Exception:
@@ -930,7 +932,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._float64_values
 
     @float64_values.setter
-    def float64_values(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float64_values(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float64_values = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -943,7 +945,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._int8_values
 
     @int8_values.setter
-    def int8_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int8_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int8_values = numpy.array(value, numpy.int8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, value)
         except Exception:
@@ -956,7 +958,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._uint8_values
 
     @uint8_values.setter
-    def uint8_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint8_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint8_values = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -969,7 +971,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._int16_values
 
     @int16_values.setter
-    def int16_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int16_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int16_values = numpy.array(value, numpy.int16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, value)
         except Exception:
@@ -982,7 +984,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._uint16_values
 
     @uint16_values.setter
-    def uint16_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint16_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint16_values = numpy.array(value, numpy.uint16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, value)
         except Exception:
@@ -995,7 +997,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._int32_values
 
     @int32_values.setter
-    def int32_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int32_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int32_values = numpy.array(value, numpy.int32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, value)
         except Exception:
@@ -1008,7 +1010,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._uint32_values
 
     @uint32_values.setter
-    def uint32_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint32_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint32_values = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
@@ -1021,7 +1023,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._int64_values
 
     @int64_values.setter
-    def int64_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int64_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int64_values = numpy.array(value, numpy.int64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, value)
         except Exception:
@@ -1034,7 +1036,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._uint64_values
 
     @uint64_values.setter
-    def uint64_values(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint64_values(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint64_values = numpy.array(value, numpy.uint64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, value)
         except Exception:
@@ -1047,7 +1049,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._char_values_default
 
     @char_values_default.setter
-    def char_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def char_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._char_values_default = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -1060,7 +1062,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._float32_values_default
 
     @float32_values_default.setter
-    def float32_values_default(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float32_values_default(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float32_values_default = numpy.array(value, numpy.float32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float32, value)
         except Exception:
@@ -1073,7 +1075,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._float64_values_default
 
     @float64_values_default.setter
-    def float64_values_default(self, value: Sequence[float] | NDArray[Any] | arrays.Buffer) -> None:
+    def float64_values_default(self, value: Sequence[float] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._float64_values_default = numpy.array(value, numpy.float64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.float64, value)
         except Exception:
@@ -1086,7 +1088,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._int8_values_default
 
     @int8_values_default.setter
-    def int8_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int8_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int8_values_default = numpy.array(value, numpy.int8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int8, value)
         except Exception:
@@ -1099,7 +1101,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._uint8_values_default
 
     @uint8_values_default.setter
-    def uint8_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint8_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint8_values_default = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:
@@ -1112,7 +1114,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._int16_values_default
 
     @int16_values_default.setter
-    def int16_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int16_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int16_values_default = numpy.array(value, numpy.int16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int16, value)
         except Exception:
@@ -1125,7 +1127,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._uint16_values_default
 
     @uint16_values_default.setter
-    def uint16_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint16_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint16_values_default = numpy.array(value, numpy.uint16) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint16, value)
         except Exception:
@@ -1138,7 +1140,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._int32_values_default
 
     @int32_values_default.setter
-    def int32_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int32_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int32_values_default = numpy.array(value, numpy.int32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int32, value)
         except Exception:
@@ -1151,7 +1153,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._uint32_values_default
 
     @uint32_values_default.setter
-    def uint32_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint32_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint32_values_default = numpy.array(value, numpy.uint32) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint32, value)
         except Exception:
@@ -1164,7 +1166,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._int64_values_default
 
     @int64_values_default.setter
-    def int64_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def int64_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._int64_values_default = numpy.array(value, numpy.int64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.int64, value)
         except Exception:
@@ -1177,7 +1179,7 @@ class Arrays_Response(Message, metaclass=Metaclass_Arrays_Response):
         return self._uint64_values_default
 
     @uint64_values_default.setter
-    def uint64_values_default(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uint64_values_default(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uint64_values_default = numpy.array(value, numpy.uint64) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint64, value)
         except Exception:
@@ -1380,7 +1382,7 @@ class Arrays_Event(Message, metaclass=Metaclass_Arrays_Event):
         request: list[Arrays_Request] = DEFAULT,
         response: list[Arrays_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -16,6 +16,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -27,7 +28,7 @@ from tf2_msgs.msg import TF2Error as tf2_msgs_msg_TF2Error
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -117,7 +118,7 @@ class LookupTransform_Goal(Message, metaclass=Metaclass_LookupTransform_Goal):
         fixed_frame: str = "",
         advanced: bool = False,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -218,7 +219,7 @@ class LookupTransform_Result(Message, metaclass=Metaclass_LookupTransform_Result
         transform: geometry_msgs_msg_TransformStamped = DEFAULT,
         error: tf2_msgs_msg_TF2Error = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -277,7 +278,7 @@ class LookupTransform_Feedback(Message, metaclass=Metaclass_LookupTransform_Feed
         self,
         *,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -344,7 +345,7 @@ class LookupTransform_SendGoal_Request(Message, metaclass=Metaclass_LookupTransf
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         goal: LookupTransform_Goal = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -423,7 +424,7 @@ class LookupTransform_SendGoal_Response(Message, metaclass=Metaclass_LookupTrans
         accepted: bool = False,
         stamp: builtin_interfaces_msg_Time = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -511,7 +512,7 @@ class LookupTransform_SendGoal_Event(Message, metaclass=Metaclass_LookupTransfor
         request: list[LookupTransform_SendGoal_Request] = DEFAULT,
         response: list[LookupTransform_SendGoal_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -584,7 +585,7 @@ class LookupTransform_GetResult_Request(Message, metaclass=Metaclass_LookupTrans
         *,
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -658,7 +659,7 @@ class LookupTransform_GetResult_Response(Message, metaclass=Metaclass_LookupTran
         status: int = 0,
         result: LookupTransform_Result = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -746,7 +747,7 @@ class LookupTransform_GetResult_Event(Message, metaclass=Metaclass_LookupTransfo
         request: list[LookupTransform_GetResult_Request] = DEFAULT,
         response: list[LookupTransform_GetResult_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -830,7 +831,7 @@ class LookupTransform_FeedbackMessage(Message, metaclass=Metaclass_LookupTransfo
         goal_id: unique_identifier_msgs_msg_UUID = DEFAULT,
         feedback: LookupTransform_Feedback = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

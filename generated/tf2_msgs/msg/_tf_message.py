@@ -7,11 +7,18 @@ from __future__ import annotations
 
 from geometry_msgs.msg import TransformStamped as geometry_msgs_msg_TransformStamped
 from ifgen_runtime.copying import copied_list, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -43,7 +50,7 @@ class TFMessage(Message, metaclass=Metaclass_TFMessage):
         *,
         transforms: list[geometry_msgs_msg_TransformStamped] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -19,7 +20,7 @@ from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventIn
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -42,7 +43,7 @@ class FrameGraph_Request(Message, metaclass=Metaclass_FrameGraph_Request):
         self,
         *,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -98,7 +99,7 @@ class FrameGraph_Response(Message, metaclass=Metaclass_FrameGraph_Response):
         *,
         frame_yaml: str = "",
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -181,7 +182,7 @@ class FrameGraph_Event(Message, metaclass=Metaclass_FrameGraph_Event):
         request: list[FrameGraph_Request] = DEFAULT,
         response: list[FrameGraph_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

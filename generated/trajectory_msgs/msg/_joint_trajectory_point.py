@@ -6,6 +6,7 @@ RIHS01_de8907036d8bd45aac6f30cc9044a3d4a329c42cbf719aff7d95a584cfa532d7
 from __future__ import annotations
 
 from array import array
+from collections.abc import Iterable
 
 from builtin_interfaces.msg import Duration as builtin_interfaces_msg_Duration
 from ifgen_runtime.copying import (
@@ -23,6 +24,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -31,8 +33,7 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
     from ifgen_runtime.views import Float64Array
 
@@ -83,7 +84,7 @@ class JointTrajectoryPoint(Message, metaclass=Metaclass_JointTrajectoryPoint):
         effort: Iterable[float] | arrays.Buffer = DEFAULT,
         time_from_start: builtin_interfaces_msg_Duration = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -10,6 +10,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -22,7 +23,7 @@ from trajectory_msgs.msg import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -76,7 +77,7 @@ class MultiDOFJointTrajectory(Message, metaclass=Metaclass_MultiDOFJointTrajecto
         joint_names: list[str] = DEFAULT,
         points: list[trajectory_msgs_msg_MultiDOFJointTrajectoryPoint] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

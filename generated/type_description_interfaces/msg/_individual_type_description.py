@@ -6,13 +6,20 @@ RIHS01_55c827d86c3c141bdd318fe6c22e11190e4d3b37c8f4f9751a084aa05ce96560
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from type_description_interfaces.msg import Field as type_description_interfaces_msg_Field
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
 _check_fields = checks_by_default()
 
@@ -55,7 +62,7 @@ class IndividualTypeDescription(Message, metaclass=Metaclass_IndividualTypeDescr
         type_name: str = "",
         fields: list[type_description_interfaces_msg_Field] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -23,7 +24,7 @@ from type_description_interfaces.msg import TypeSource as type_description_inter
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -79,7 +80,7 @@ class GetTypeDescription_Request(Message, metaclass=Metaclass_GetTypeDescription
         type_hash: str = "",
         include_type_sources: bool = True,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -184,7 +185,7 @@ class GetTypeDescription_Response(Message, metaclass=Metaclass_GetTypeDescriptio
         type_sources: list[type_description_interfaces_msg_TypeSource] = DEFAULT,
         extra_information: list[type_description_interfaces_msg_KeyValue] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -287,7 +288,7 @@ class GetTypeDescription_Event(Message, metaclass=Metaclass_GetTypeDescription_E
         request: list[GetTypeDescription_Request] = DEFAULT,
         response: list[GetTypeDescription_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

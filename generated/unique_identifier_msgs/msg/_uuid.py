@@ -5,11 +5,14 @@ RIHS01_1b8e8aca958cbea28fe6ef60bf6c19b683c97a9ef60bb34752067d0f2f7ab437
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from ifgen_runtime.copying import ITERABLES, arrays, copied_array, new_object, repr_name
 from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     initialize_checked,
     note_field,
@@ -17,8 +20,7 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from typing import Any, ClassVar, Never
+    from typing import Any, ClassVar
 
     import numpy
     from numpy.typing import NDArray
@@ -49,9 +51,9 @@ class UUID(Message, metaclass=Metaclass_UUID):
     def __init__(
         self,
         *,
-        uuid: Sequence[int] | NDArray[Any] | arrays.Buffer = DEFAULT,
+        uuid: Sequence[int] | arrays.AnyArray | arrays.Buffer = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -71,7 +73,7 @@ class UUID(Message, metaclass=Metaclass_UUID):
         return self._uuid
 
     @uuid.setter
-    def uuid(self, value: Sequence[int] | NDArray[Any] | arrays.Buffer) -> None:
+    def uuid(self, value: Sequence[int] | arrays.AnyArray | arrays.Buffer) -> None:
         try:
             self._uuid = numpy.array(value, numpy.uint8) if value.__class__ in ITERABLES else arrays.ndarray_of(numpy.uint8, value)
         except Exception:

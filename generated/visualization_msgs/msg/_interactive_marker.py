@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -22,7 +23,7 @@ from visualization_msgs.msg import MenuEntry as visualization_msgs_msg_MenuEntry
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -107,7 +108,7 @@ class InteractiveMarker(Message, metaclass=Metaclass_InteractiveMarker):
         menu_entries: list[visualization_msgs_msg_MenuEntry] = DEFAULT,
         controls: list[visualization_msgs_msg_InteractiveMarkerControl] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -20,7 +21,7 @@ from visualization_msgs.msg import Marker as visualization_msgs_msg_Marker
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -156,7 +157,7 @@ class InteractiveMarkerControl(Message, metaclass=Metaclass_InteractiveMarkerCon
         independent_marker_orientation: bool = False,
         description: str = "",
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -6,14 +6,21 @@ RIHS01_0a8b000c4fd4d50876ac716a7de018911599a2f015795388e956a2ca8b0c54f0
 from __future__ import annotations
 
 from ifgen_runtime.copying import copied_list, copied_other, deepcopy_of, new_object, repr_name
-from ifgen_runtime.message import DEFAULT, Message, MessageMeta, checks_by_default, initialize_checked
+from ifgen_runtime.message import (
+    DEFAULT,
+    Message,
+    MessageMeta,
+    NoSuchField,
+    checks_by_default,
+    initialize_checked,
+)
 
 from visualization_msgs.msg import InteractiveMarker as visualization_msgs_msg_InteractiveMarker
 from visualization_msgs.msg import InteractiveMarkerPose as visualization_msgs_msg_InteractiveMarkerPose
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -97,7 +104,7 @@ class InteractiveMarkerUpdate(Message, metaclass=Metaclass_InteractiveMarkerUpda
         poses: list[visualization_msgs_msg_InteractiveMarkerPose] = DEFAULT,
         erases: list[str] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

@@ -14,6 +14,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -27,7 +28,7 @@ from visualization_msgs.msg import UVCoordinate as visualization_msgs_msg_UVCoor
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, Never, TypeAlias
+    from typing import Any, ClassVar, Final, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -275,7 +276,7 @@ class Marker(Message, metaclass=Metaclass_Marker):
         mesh_file: visualization_msgs_msg_MeshFile = DEFAULT,
         mesh_use_embedded_materials: bool = False,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

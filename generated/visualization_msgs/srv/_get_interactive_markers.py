@@ -11,6 +11,7 @@ from ifgen_runtime.message import (
     DEFAULT,
     Message,
     MessageMeta,
+    NoSuchField,
     checks_by_default,
     default_of,
     initialize_checked,
@@ -21,7 +22,7 @@ from visualization_msgs.msg import InteractiveMarker as visualization_msgs_msg_I
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Never, TypeAlias
+    from typing import Any, ClassVar, TypeAlias
 
 _check_fields = checks_by_default()
 
@@ -44,7 +45,7 @@ class GetInteractiveMarkers_Request(Message, metaclass=Metaclass_GetInteractiveM
         self,
         *,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -108,7 +109,7 @@ class GetInteractiveMarkers_Response(Message, metaclass=Metaclass_GetInteractive
         sequence_number: int = 0,
         markers: list[visualization_msgs_msg_InteractiveMarker] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())
@@ -208,7 +209,7 @@ class GetInteractiveMarkers_Event(Message, metaclass=Metaclass_GetInteractiveMar
         request: list[GetInteractiveMarkers_Request] = DEFAULT,
         response: list[GetInteractiveMarkers_Response] = DEFAULT,
         check_fields: bool = _check_fields,
-        **_unknown: Never,
+        **_unknown: NoSuchField,
     ) -> None:
         if check_fields or _unknown:
             initialize_checked(self, locals())

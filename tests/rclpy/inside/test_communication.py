@@ -134,7 +134,7 @@ def test_wrong_field_values_are_refused_at_publish(message: Any, where: str, sub
 
 
 def test_half_a_surrogate_pair_raises_what_rclpy_raises() -> None:
-    """A UnicodeEncodeError, with the field in a note; also for services and serialize_message."""
+    """A UnicodeEncodeError that names the field; also for services and serialize_message."""
     node = Node("n")
     publisher = node.create_publisher(String, "t", 10)
     client = rcl.Client(node.handle, BasicTypes, "s", profile())
@@ -143,9 +143,8 @@ def test_half_a_surrogate_pair_raises_what_rclpy_raises() -> None:
         lambda: serialize_message(String(data="bad \ud83d")),
         lambda: client.send_request(BasicTypes.Request(string_value="bad \ud83d")),
     ):
-        with pytest.raises(UnicodeEncodeError) as caught:
+        with pytest.raises(UnicodeEncodeError, match=r"\.(data|string_value): half of a surrogate pair"):
             send()
-        assert ".data" in caught.value.__notes__[0] or ".string_value" in caught.value.__notes__[0]
 
 
 def test_a_wrong_response_is_refused_by_the_service() -> None:

@@ -12,6 +12,7 @@ from typing import Final
 import click
 
 from ifgen.cli import completion
+from ifgen.config import installing
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.running.finding import packages
@@ -46,7 +47,7 @@ def test(transport: str, package: str, arguments: tuple[str, ...]) -> int:
     folder = _tests_of(package, output)
     if find_spec("pytest") is None:
         raise UsageError(
-            [Diagnostic("no-pytest", "there is no pytest here", help="install it, and hypothesis")]
+            [Diagnostic("no-pytest", "there is no pytest here", help=f"run `{installing.add_extra('test')}`")]
         )
     command = [sys.executable, "-m", "pytest", f"--transport={transport}", str(folder), *arguments]
     return subprocess.call(command, env=_with_sources(package, output))

@@ -11,11 +11,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final, cast
 
 from ifgen.definition import names
-from ifgen.definition.cycles import check_cycles
 from ifgen.definition.described.defaults import default_value
 from ifgen.definition.described.limits import check_limits
 from ifgen.definition.described.types import BadDescription, field_type
 from ifgen.definition.escapes import BadValue
+from ifgen.definition.impossible import check_cycles
 from ifgen.definition.interfaces import (
     Action,
     Field,

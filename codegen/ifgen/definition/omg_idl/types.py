@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final, TypeAlias
 
-from ifgen.definition import rules
+from ifgen.definition.impossible import check_sizes
 from ifgen.definition.omg_idl import explain_types as explain
 from ifgen.definition.omg_idl.values import size_of
 from ifgen.definition.problems import FileProblems
@@ -234,7 +234,7 @@ class Types:
         if meaning is None:
             return None
         type_ = meaning if outer is None else outer.of(meaning)
-        rules.check_sizes(type_, Span(self._source, node.start, node.end), self._problems)
+        check_sizes(type_, Span(self._source, node.start, node.end), self._problems)
         return type_
 
     def _meaning(self, named: _Named) -> _Meaning | None:

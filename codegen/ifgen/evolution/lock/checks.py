@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from ifgen.definition import derive
-from ifgen.definition.cycles import check_cycles
+from ifgen.definition.impossible import check_cycles
 from ifgen.definition.interfaces import Action, Interface, Message, Registry
 from ifgen.definition.references import references
 from ifgen.definition.type_description import TypeHashes, referenced_types

@@ -38,7 +38,7 @@ def class_lines(scope: Scope) -> ClassLines:
         metaclass=scope("MessageMeta"),
         base=scope("Message"),
         texts=f"{scope('ClassVar')}[{scope('dict')}[{text}, {text}]]",
-        parameters=(f"check_fields: {scope('bool')} = _check_fields", f"**_unknown: {scope('Never')}"),
+        parameters=(f"check_fields: {scope('bool')} = _check_fields", f"**_unknown: {scope('NoSuchField')}"),
         checked=f"{scope('initialize_checked')}(self, {scope('locals')}())",
         repr=f"def __repr__(self) -> {text}:",
         equality=f"def __eq__(self: {any_}, other: {any_}) -> {scope('bool')}:",

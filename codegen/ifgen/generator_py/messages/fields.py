@@ -264,7 +264,7 @@ def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> Pyt
         field,
         scope,
         annotation=f"{ndarray}[{dtype}]",
-        parameter=f"{scope('Sequence')}[{element}] | {ndarray}[{scope('Any')}] | {arrays}.Buffer",
+        parameter=f"{scope('Sequence')}[{element}] | {arrays}.AnyArray | {arrays}.Buffer",
         # The dtype of zeros() is float64 unless it is given, which takes longer.
         new=f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})",
         from_items=f"{numpy}.array({{}}, {dtype})",

@@ -12,7 +12,6 @@ _CODEC: Final = "ifgen_runtime.codec"
 _FOR_TYPE_CHECKERS: Final = {
     "typing",
     "enum",
-    "collections.abc",
     "numpy.typing",
     "ifgen_runtime.views",
     "",

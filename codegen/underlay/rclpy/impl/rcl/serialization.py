@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from rmw_local.message import DecodeError, SerializationError, as_raised, message_type
+from rmw_local.message import DecodeError, message_type
 
 from .errors import RMWError
 
 
 def rclpy_serialize(pymsg: Any, pymsg_type: type[Any]) -> bytes:
     """Return a message as CDR bytes with their encapsulation header."""
-    try:
-        return message_type(pymsg_type).serialize(pymsg)
-    except SerializationError as error:
-        raise as_raised(error) from None
+    return message_type(pymsg_type).serialize(pymsg)
 
 
 def rclpy_deserialize(pybuffer: bytes, pymsg_type: type[Any]) -> Any:
