@@ -9,10 +9,10 @@ from typing import Any, Final, cast
 from ifgen_runtime.bag.compression import decompressed_file
 from ifgen_runtime.bag.errors import BagError, Damages
 from ifgen_runtime.bag.mcap_file import McapFile
+from ifgen_runtime.bag.metadata import METADATA
 from ifgen_runtime.bag.qos import OfferedQoS, parsed, profiles_of
 from ifgen_runtime.bag.topics import Source
 
-METADATA: Final = "metadata.yaml"
 _ENDINGS: Final = (".mcap", ".db3")
 _ZSTD: Final = (".zstd", ".zst")
 

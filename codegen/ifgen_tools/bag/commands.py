@@ -320,8 +320,9 @@ def _needs_output(chosen: dict[str, Any]) -> Path:
 )
 def convert(bag_path: Path, max_bag_size: int, **chosen: Any) -> int:
     """Write a bag in another format: MCAP or SQLite, a folder or a file, compressed or not."""
+    from ifgen_runtime.bag.writer import Limits
+
     from ifgen_tools.bag.copying import convert as run
-    from ifgen_tools.bag.storage.writer import Limits
 
     return run(bag_path, _needs_output(chosen), _format(chosen), Limits(max_bag_size))
 

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
+
+from ifgen_tools.bag.output import whole
 from ifgen_tools.bag.reading import reading
 from ifgen_tools.bag.selection import Selection, selection
-from ifgen_tools.bag.storage.output import whole
-from ifgen_tools.bag.storage.writer import SUFFIXES, BagWriter, Format, Limits
 from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def written(
     limits: Limits | None = None,
 ) -> int:
     """Write a part of a bag to a new place, all of it or nothing; returns how many messages that are."""
-    is_folder = output.suffix not in SUFFIXES.values()
+    is_folder = storage_of(output) is None
     if not is_folder and format.outer:
         raise ToolError(
             f"{output} is a single file, and cannot be compressed as a whole", help="name a folder"
@@ -59,12 +60,11 @@ def written(
     chosen = [topic.name for topic in bag.topics.values() if part.choice.takes(topic.name, topic.type_name)]
     if not chosen:
         raise ToolError(f"nothing of {bag.path} is chosen", help="`ifgen bag info` shows its topics")
-    with whole(output) as place:
-        writer = BagWriter(place, format, is_folder, limits or Limits(), name=output.name)
-        try:
-            _copy(bag, writer, part, chosen, passage)
-        finally:
-            writer.close()
+    with (
+        whole(output) as place,
+        BagWriter(place, format, is_folder, limits or Limits(), name=output.name) as writer,
+    ):
+        _copy(bag, writer, part, chosen, passage)
     return writer.count
 
 

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 from ifgen.config.settings import settle
 from ifgen_runtime.adapters import adapter_for
 from ifgen_runtime.bag.topics import Channel
+from ifgen_runtime.bag.writer import Format
 from ifgen_runtime.codec import deserialize, serialize
 
 from ifgen_tools.bag import targets
 from ifgen_tools.bag.conversions import Loss, conversion
 from ifgen_tools.bag.copying import Part, Passage, everything, written
 from ifgen_tools.bag.reading import reading
-from ifgen_tools.bag.storage.writer import Format
 from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:

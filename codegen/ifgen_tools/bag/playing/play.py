@@ -177,7 +177,11 @@ class _Playing:
                 self._requesters.append(caller)
                 self._publishers[topic, channel.definition] = caller.send
             return
-        publisher = self._session.node.create_publisher(cls, topic, self._overrides.get(topic, offer))
+        try:
+            publisher = self._session.node.create_publisher(cls, topic, self._overrides.get(topic, offer))
+        except (RuntimeError, ValueError) as error:  # another type has this name; RCLError has no public name
+            print(f"warning: {topic} is not played: {error}", file=sys.stderr)
+            return
         self._all.append(publisher)
         self._publishers[topic, channel.definition] = publisher.publish
 

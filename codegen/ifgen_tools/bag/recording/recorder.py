@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -26,6 +28,12 @@ _DEPTH: Final = 100_000
 _AT_ONCE: Final = 200
 """Messages of a topic that are taken before others get their turn."""
 
+_BYTES_AT_ONCE: Final = 2**20
+"""Bytes of a topic after which others get their turn: small messages must not wait for 200 images."""
+
+_COUNTING: Final = 2.0
+"""Seconds at most for counting what is not recorded any more."""
+
 _AGAIN: Final = 50
 """Looks at the graph after which somebody who did not describe a type is asked again."""
 
@@ -47,16 +55,40 @@ class RecordOptions:
     use_sim_time: bool = False
 
 
+@dataclass(slots=True)
+class _Source:
+    """A subscription, and where its messages go."""
+
+    topic: str
+    subscription: Subscription[Any]
+    record: Callable[[bytes, Any], None]
+
+    def take(self, until: int | None = None) -> Any:
+        """The next message that waits, with its metadata; None if there is none that came until then [ns]."""
+        with self.subscription.handle:
+            taken = self.subscription.handle.take_message(self.subscription.msg_type, True)
+        if taken is None or (until is not None and _received(taken[1]) > until):
+            return None
+        return taken
+
+    def turn(self, taken: Any, until: int | None = None) -> None:
+        """Record a message and those that wait after it, until it is the turn of others."""
+        size = 0
+        for _ in range(_AT_ONCE):
+            self.record(*taken)
+            size += len(taken[0])
+            if size >= _BYTES_AT_ONCE or (taken := self.take(until)) is None:
+                return
+
+
 class TopicRecorder:
     """Records what is chosen, each definition of a topic's type for itself."""
 
     def __init__(self, node: Node, options: RecordOptions, open: Open, say: Callable[[str], None]) -> None:
         """Subscribe with a node; `say` tells the user what happens."""
         self.is_paused = False
-        self.taken = 0
-        """Messages that came, recorded or not."""
         self._node, self._options, self._open, self._say = node, options, open, say
-        self._subscribed: dict[tuple[str, WireType], Subscription[Any]] = {}
+        self._subscribed: dict[tuple[str, WireType], _Source] = {}
         self._asked: dict[tuple[str, WireType], Future[type[Any]]] = {}
         self._refused: dict[tuple[str, WireType], int] = {}
         self._lost: dict[str, int] = {}
@@ -83,11 +115,33 @@ class TopicRecorder:
                 if key not in self._subscribed and self._may_ask(key):
                     self._take(key)
 
+    def drain(self, until: int, may_go_on: Callable[[], bool]) -> None:
+        """Record what waits and was received until a time [ns since 1970], each topic in its turn."""
+        waiting = list(self._subscribed.values())
+        while waiting:
+            for source in tuple(waiting):
+                if not may_go_on():
+                    return
+                taken = source.take(until)
+                if taken is None:
+                    waiting.remove(source)
+                else:
+                    source.turn(taken, until)
+
+    def leave(self, until: int) -> Counter[str]:
+        """Take what waits and was received until a time [ns since 1970], and only count it, by topic."""
+        left: Counter[str] = Counter()
+        end = time.monotonic() + _COUNTING
+        for source in self._subscribed.values():
+            while time.monotonic() < end and source.take(until) is not None:
+                left[source.topic] += 1
+        return left
+
     def close(self) -> None:
         """Stop to record."""
         self._asking.shutdown(wait=False, cancel_futures=True)
-        for subscription in self._subscribed.values():
-            self._node.destroy_subscription(subscription)
+        for source in self._subscribed.values():
+            self._node.destroy_subscription(source.subscription)
 
     def _wanted(self, topic: str) -> list[WireType]:
         """The types of a topic to record, as its publishers have them."""
@@ -138,28 +192,33 @@ class TopicRecorder:
             for info in self._node.get_publishers_info_by_topic(topic)
             if info.topic_type == wire.name
         ]
-        profile = self._profile(topic, offers)
-        write = self._open(topic, cls, offers)
         clock, use_sim_time = self._node.get_clock(), self._options.use_sim_time
+        write: Write | None = None
 
         def record(data: bytes, info: Any) -> None:
-            if self.is_paused:
+            if self.is_paused or write is None:
                 return
-            received = clock.now().nanoseconds if use_sim_time else info["received_timestamp"]
+            received = clock.now().nanoseconds if use_sim_time else _received(info)
             if received:  # there is no simulated time before the first /clock
                 write(data, received, info["source_timestamp"] or received)
 
-        def record_all(data: bytes, info: Any) -> None:
+        def turn(data: bytes, info: Any) -> None:
             """Take what waits besides, without a turn of the executor for each: half the time."""
-            record(data, info)
-            taken = 1
-            while taken < _AT_ONCE and (more := _take(subscription)) is not None:
-                record(*more)
-                taken += 1
-            self.taken += taken
+            source.turn((data, info))
 
-        subscription = self._subscription(topic, cls, record_all, profile)
-        self._subscribed[key] = subscription
+        try:
+            subscription = self._subscription(topic, cls, turn, self._profile(topic, offers))
+        except (RuntimeError, ValueError) as error:  # RCLError has no public name
+            self._refused[key] = _AGAIN
+            others = [of.name for name, of in self._subscribed if name == topic and of.name != wire.name]
+            self._warn(
+                f"{topic} is recorded with messages of {others[0]}: those of {wire.name} are not recorded"
+                if others
+                else f"{topic} is not recorded: {error}"
+            )
+            return
+        source = self._subscribed[key] = _Source(topic, subscription, record)
+        write = self._open(topic, cls, offers)
         self._say(f"Subscribed to topic '{topic}'")
 
     def _subscription(
@@ -199,10 +258,9 @@ _CONSEQUENCE: Final = {
 }
 
 
-def _take(subscription: Subscription[Any]) -> Any:
-    """The next message that waits, with its metadata; None if there is none."""
-    with subscription.handle:
-        return subscription.handle.take_message(subscription.msg_type, True)
+def _received(info: Any) -> int:
+    """When a message was received [ns since 1970]; now, if the middleware does not say."""
+    return info["received_timestamp"] or time.time_ns()
 
 
 def _installed(wire: WireType) -> type[Any] | None:
@@ -210,7 +268,7 @@ def _installed(wire: WireType) -> type[Any] | None:
     package, folder, name = (*wire.name.split("/", 2), "", "")[:3]
     try:
         cls = getattr(import_module(f"{package}.{folder}"), name, None)
-    except (ImportError, ValueError):
+    except Exception:  # of a package that somebody else wrote: the publisher can describe its type
         return None
     fits = cls is not None and wire.hash in {None, getattr(cls, "__type_hash__", wire.hash)}
     return cls if fits else None

@@ -13,11 +13,11 @@ import pytest
 import rclpy
 from geometry_msgs.msg import Point
 from ifgen_runtime.bag import Bag
+from ifgen_runtime.bag.writer import Limits
 from ifgen_tools.bag.choices import file_format
 from ifgen_tools.bag.recording.record import RecordCommand, Recording, record
 from ifgen_tools.bag.recording.recorder import TopicRecorder
 from ifgen_tools.bag.selection import selection
-from ifgen_tools.bag.storage.writer import Limits
 from ifgen_tools.errors import ToolError
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
