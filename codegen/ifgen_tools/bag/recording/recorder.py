@@ -73,12 +73,11 @@ class _Source:
 
     def turn(self, taken: Any, until: int | None = None) -> None:
         """Record a message and those that wait after it, until it is the turn of others."""
-        size = 0
-        for _ in range(_AT_ONCE):
+        count = size = 0
+        while taken is not None:
             self.record(*taken)
-            size += len(taken[0])
-            if size >= _BYTES_AT_ONCE or (taken := self.take(until)) is None:
-                return
+            count, size = count + 1, size + len(taken[0])
+            taken = self.take(until) if count < _AT_ONCE and size < _BYTES_AT_ONCE else None
 
 
 class TopicRecorder:
@@ -169,6 +168,12 @@ class TopicRecorder:
 
     def _take(self, key: tuple[str, WireType]) -> None:
         topic, wire = key
+        if others := [of.name for name, of in self._subscribed if name == topic and of.name != wire.name]:
+            # A participant of DDS can have one type for each topic.
+            self._warn(
+                f"{topic} is recorded with messages of {others[0]}: those of {wire.name} are not recorded"
+            )
+            return
         cls = _installed(wire)
         if cls is None:
             asked = self._asked.get(key)
@@ -210,12 +215,7 @@ class TopicRecorder:
             subscription = self._subscription(topic, cls, turn, self._profile(topic, offers))
         except (RuntimeError, ValueError) as error:  # RCLError has no public name
             self._refused[key] = _AGAIN
-            others = [of.name for name, of in self._subscribed if name == topic and of.name != wire.name]
-            self._warn(
-                f"{topic} is recorded with messages of {others[0]}: those of {wire.name} are not recorded"
-                if others
-                else f"{topic} is not recorded: {error}"
-            )
+            self._warn(f"{topic} is not recorded: {error}")
             return
         source = self._subscribed[key] = _Source(topic, subscription, record)
         write = self._open(topic, cls, offers)
