@@ -38,6 +38,11 @@ def full_name(short: str, package: str = "") -> str:
     return f"{parts[0]}/msg/{parts[1]}" if len(parts) == 2 else short
 
 
+def type_in(name: str) -> str:
+    """The name of a type as a file has it; some writers leave `msg` out."""
+    return full_name(name) if name.count("/") == 1 else name
+
+
 def definition_of(cls: type[Any]) -> Definition:
     """The definition of a message class, as bags have it."""
     generated = next((of for of in cls.__mro__ if "__type_hash__" in vars(of)), cls)  # of one with checks

@@ -136,14 +136,17 @@ def _number(path: Path) -> tuple[int, str]:
 def _file(path: Path, recording: Recording, damages: Damages) -> Source:
     recording.files.append(path)
     if path.suffix in _ZSTD:
-        path = decompressed_file(path)
+        path = decompressed_file(path, damages)
         recording.temporary.append(path)
     with path.open("rb") as file:
         beginning = file.read(16)
     if beginning.startswith(b"SQLite format 3") or path.suffix == ".db3":
         from ifgen_runtime.bag.sqlite_file import SqliteFile  # with sqlite3, which MCAP does not need
 
-        return SqliteFile(path, damages, recording.hashes)
+        source = SqliteFile(path, damages, recording.hashes)
+        if source.has_compressed_messages:  # after a crash there is no metadata that says so
+            recording.compression = recording.compression or "zstd"
+        return source
     if beginning.startswith(b"\x89MCAP") or path.suffix == ".mcap":
         return McapFile(path, damages, recording.hashes)
     if beginning.startswith(b"#ROSBAG"):

@@ -53,6 +53,15 @@ class Layout:
     channels: dict[int, ChannelRecord] = field(default_factory=dict[int, ChannelRecord])
     pieces: list[Piece] = field(default_factory=list[Piece])
     counts: Counter[int] = field(default_factory=Counter[int])
+    attachments: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
+    """The offsets of attachments, and the lengths of their contents."""
+    data_end: int = 0
+    """The offset of the record that ends the data; 0 if it was not met."""
+
+    @property
+    def has_all_schemas(self) -> bool:
+        """Whether the definition of each channel is known."""
+        return {channel.schema for channel in self.channels.values()} - {0} <= self.schemas.keys()
 
     def note(self, opcode: int, content: bytes) -> None:
         """Note a schema or a channel; the first of a number counts."""
@@ -114,6 +123,15 @@ class OpenFile:
 
 def layout_of(file: OpenFile) -> Layout:
     """The layout of a file: that of its summary, where this is sound, or what is found in it."""
+    found = _layout_of(file)
+    for channel in found.channels.values():
+        if channel.schema and channel.schema not in found.schemas:
+            text = f"the definition of the messages of {channel.topic} is not in the file"
+            file.damages.note(file.path, None, text)
+    return found
+
+
+def _layout_of(file: OpenFile) -> Layout:
     if file.read(0, min(len(MAGIC), file.size)) != MAGIC:
         raise BagError(f"{file.path}: this is no MCAP file: it does not begin as one")
     reason = ""
@@ -183,6 +201,16 @@ def _summary(file: OpenFile, summary: bytes, end: int) -> Layout | None:
         position = chunk.offset + chunk.length + chunk.indexes_length
     layout.pieces += _outside(file, position, end, layout)
     layout.counts = Counter(said.by_channel)
+    for piece in layout.pieces:  # where the summary does not repeat definitions
+        if layout.has_all_schemas:
+            break
+        if piece.is_chunk:
+            _, length = file.head(piece.offset)
+            for opcode, content, _ in records_in(
+                file.chunk(file.chunk_head(piece.offset + HEAD.size, length))
+            ):
+                if opcode == Opcode.SCHEMA:
+                    layout.note(opcode, content)
     return layout
 
 
@@ -212,8 +240,8 @@ def _outside(file: OpenFile, position: int, end: int, layout: Layout, count: boo
             times.append(fields[4])
             if count:
                 layout.counts[fields[2]] += 1
-        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-            layout.note(opcode, file.read(position + HEAD.size, length))
+        else:
+            _note(file, opcode, position, length, layout)
         if opcode in (Opcode.DATA_END, Opcode.FOOTER):
             after = end
         if times and (opcode != Opcode.MESSAGE or after - first > _RUN or after >= end):
@@ -223,6 +251,34 @@ def _outside(file: OpenFile, position: int, end: int, layout: Layout, count: boo
         if not times:
             first = after
         position = after
+
+
+def _note(file: OpenFile, opcode: int, position: int, length: int, layout: Layout) -> None:
+    """Note a record outside chunks that is no message."""
+    if opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+        layout.note(opcode, file.read(position + HEAD.size, length))
+    elif opcode == Opcode.ATTACHMENT:
+        layout.attachments.append((position + HEAD.size, length))
+    elif opcode == Opcode.DATA_END:
+        layout.data_end = position
+
+
+def wrong_checksums(file: OpenFile, layout: Layout) -> Iterator[tuple[int, str]]:
+    """The checksums that do not fit what they are of, except those of chunks: where, and which."""
+    for offset, length in layout.attachments:
+        content = file.read(offset, length)
+        name, crc, covered = records.attachment(content)
+        if crc and crc32(content[:covered]) != crc:
+            yield offset - HEAD.size, f"the checksum of the attachment {name!r} does not fit its content"
+    if not layout.data_end:
+        return
+    crc, found, position = int.from_bytes(file.read(layout.data_end + HEAD.size, 4), "little"), 0, 0
+    while crc and position < layout.data_end:
+        size = min(_RUN, layout.data_end - position)
+        found = crc32(file.read(position, size), found)
+        position += size
+    if crc and found != crc:
+        yield layout.data_end, "the checksum of the data does not fit: a message may not be what was recorded"
 
 
 def _walk(file: OpenFile, layout: Layout) -> Iterator[int]:
@@ -239,9 +295,9 @@ def _walk(file: OpenFile, layout: Layout) -> Iterator[int]:
         elif opcode == Opcode.MESSAGE:
             after = _run_end(file, position)
             layout.pieces += _outside(file, position, after, layout, count=True)
-        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-            layout.note(opcode, file.read(position + HEAD.size, length))
-        elif opcode in (Opcode.DATA_END, Opcode.FOOTER):
+        else:
+            _note(file, opcode, position, length, layout)
+        if opcode in (Opcode.DATA_END, Opcode.FOOTER):
             return
         position = after
         yield position

@@ -280,5 +280,8 @@ def _record(opcode: Opcode, *content: Any) -> bytes:
 
 
 def _text(text: str) -> bytes:
-    encoded = text.encode("utf-8", "replace")
+    try:
+        encoded = text.encode("utf-8", "surrogateescape")  # bytes that are no text, of another file
+    except UnicodeEncodeError:
+        encoded = text.encode("utf-8", "replace")
     return pack("<I", len(encoded)) + encoded

@@ -63,6 +63,11 @@ class Bag:
         return tuple(channel for source in self._store.recording.sources for channel in source.channels)
 
     @property
+    def attachments(self) -> int:
+        """The attachments of MCAP files. Nothing here reads them but their checksums."""
+        return sum(source.attachments for source in self._store.recording.sources)
+
+    @property
     def damage(self) -> tuple[Damage, ...]:
         """The damage that was met so far."""
         return tuple(self._store.damages.found)

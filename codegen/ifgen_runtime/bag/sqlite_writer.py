@@ -43,7 +43,7 @@ class SqliteWriter:
         self.facts = FileFacts(path.name)
         self._seconds = seconds
         self._numbers: dict[Channel, int] = {}
-        self._defined: set[tuple[str, str]] = set()
+        self._defined: dict[tuple[str, str], tuple[str, str]] = {}
         self._waiting: list[tuple[int, int, bytes]] = []
         self._counts: Counter[Channel] = Counter()
         self._size = self._written = 0
@@ -70,11 +70,14 @@ class SqliteWriter:
                 "INSERT INTO topics VALUES (?, ?, ?, ?, ?, ?)",
                 (*topic, write_qos(channel.qos), definition.type_hash),
             )
-            if (key := (definition.type_name, definition.type_hash)) not in self._defined:
-                self._defined.add(key)
-                encoding = definition.encoding or "unknown"
-                row = (definition.type_name, encoding, definition.text, definition.type_hash)
+            key, new = (definition.type_name, definition.type_hash), (definition.encoding, definition.text)
+            if key not in self._defined:
+                self._defined[key] = new
+                row = (key[0], definition.encoding or "unknown", definition.text, definition.type_hash)
                 self._database.execute("INSERT INTO message_definitions VALUES (NULL, ?, ?, ?, ?)", row)
+            elif self._defined[key] != new and not definition.type_hash:
+                text = f"a database has room for one definition of {key[0]} without a hash, and there are two"
+                raise BagError(f"{self.path}: {text}: write an MCAP file")
 
     def write(self, channel: Channel, received: int, published: int, data: bytes) -> None:
         """Add a message. The tables have no room for when it was published."""
@@ -127,6 +130,8 @@ class SqliteWriter:
     def _telling(self) -> Generator[None]:
         try:
             yield
+        except UnicodeEncodeError:
+            raise BagError(f"{self.path}: a database has no room for bytes that are no text") from None
         except sqlite3.Error as error:
             written = self.facts.counts.total()
             text = f"{self.path}: cannot be written any further: {error}. It has {written:,} messages"

@@ -326,7 +326,8 @@ def _opened(path: Path, format: Format) -> FileWriter:
 
 
 def _zstd() -> Any:
-    return need("zstandard", "compression").ZstdCompressor(level=1)
+    # A database has no checksums of its own.
+    return need("zstandard", "compression").ZstdCompressor(level=1, write_checksum=True)
 
 
 def _compressed_file(path: Path) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -60,6 +61,8 @@ def written(
     chosen = [topic.name for topic in bag.topics.values() if part.choice.takes(topic.name, topic.type_name)]
     if not chosen:
         raise ToolError(f"nothing of {bag.path} is chosen", help="`ifgen bag info` shows its topics")
+    if bag.attachments:
+        print(f"warning: {bag.attachments:,} attachments of {bag.path} are not copied", file=sys.stderr)
     with (
         whole(output) as place,
         BagWriter(place, format, is_folder, limits or Limits(), name=output.name) as writer,
