@@ -325,7 +325,7 @@ def test_a_full_folder_for_temporary_files(
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(zstandard, "ZstdDecompressor", type("Full", (), {"copy_stream": full}))
+    monkeypatch.setattr(zstandard, "ZstdDecompressor", type("Full", (), {"read_to_iter": full}))
     monkeypatch.setattr(compression.tempfile, "tempdir", str(tmp_path))
     says = (
         rf"a\.mcap\.zstd: cannot be decompressed into {tmp_path}, which has [\d,]+ bytes free: No space left"

@@ -8,7 +8,7 @@ import tempfile
 from pathlib import Path
 from typing import Any, Final
 
-from ifgen_runtime.bag.errors import BagError, Damages, need
+from ifgen_runtime.bag.errors import UNPACKS, BagError, Damages, need
 
 LARGEST: Final = 2**31
 """Bytes of a chunk or of a message that we are ready to read."""
@@ -63,8 +63,8 @@ def _in_blocks(stream: Any, data: bytes, size: int | None) -> bytes:
     """Decompress piece by piece, so that memory is taken for bytes that are really there."""
     found = bytearray()
     limit = LARGEST if size is None else size
-    for start in range(0, len(data), 1 << 12):
-        found += stream.decompress(data[start : start + (1 << 12)])
+    for start in range(0, len(data), 1 << 10):
+        found += stream.decompress(data[start : start + (1 << 10)])
         if len(found) > limit:
             raise Undecodable(f"it holds more than {limit:,} bytes")
     return bytes(found)
@@ -93,8 +93,12 @@ def decompressed_file(path: Path, damages: Damages) -> Path:
     descriptor, name = tempfile.mkstemp(prefix="ifgen-bag-", suffix=path.with_suffix("").suffix)
     try:
         with os.fdopen(descriptor, "wb") as out, path.open("rb") as file:
+            most = damages.most_unpacked(path.stat().st_size)
             try:
-                zstandard.ZstdDecompressor().copy_stream(file, out)
+                for block in zstandard.ZstdDecompressor().read_to_iter(file):
+                    if out.tell() + len(block) > most:
+                        raise BagError(f"{path}: this unpacks to more than {most:,} bytes, {UNPACKS}")
+                    out.write(block)
             except zstandard.ZstdError as error:
                 if not out.tell():
                     raise BagError(f"{path}: this is no file compressed with zstd: {error}") from None

@@ -46,8 +46,11 @@ def opened(path: Path, damages: Damages) -> Recording:
     try:
         if path.is_dir():
             _open_folder(path, recording, damages)
-        elif path.exists():
+        elif path.is_file():
             recording.sources.append(_file(path, recording, damages))
+        elif path.exists():
+            text = f"{path}: this is no bag: it is {_kind(path)}, and a file or a folder was expected"
+            raise BagError(text)
         else:
             raise BagError(f"{path}: there is no such file or folder")
     except OSError as error:
@@ -57,6 +60,12 @@ def opened(path: Path, damages: Damages) -> Recording:
         recording.close()
         raise
     return recording
+
+
+def _kind(path: Path) -> str:
+    """What a path is that is neither a file nor a folder, in words."""
+    kinds = {"a pipe": path.is_fifo(), "a socket": path.is_socket()}
+    return next((kind for kind, is_this in kinds.items() if is_this), "a device")
 
 
 def _open_folder(path: Path, recording: Recording, damages: Damages) -> None:
@@ -81,7 +90,7 @@ def _open_folder(path: Path, recording: Recording, damages: Damages) -> None:
 
 def _metadata(path: Path, damages: Damages) -> dict[str, Any]:
     """The contents of `metadata.yaml`. After a crash there is none, and the files are all."""
-    if not path.exists():
+    if not path.is_file():
         return {}
     try:
         loaded = parsed(path.read_text("utf-8"))
@@ -108,15 +117,16 @@ def _topics(metadata: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
 def _named_files(path: Path, metadata: dict[str, Any], damages: Damages) -> list[Path]:
     """The files that the metadata names, which have to be in the folder."""
     files: list[Path] = []
+    root = path.resolve()
     listed: object = metadata.get("relative_file_paths")
-    for name in cast("list[object]", listed) if isinstance(listed, list) else []:
-        file = path / str(name)
+    for name in dict.fromkeys(map(str, cast("list[object]", listed))) if isinstance(listed, list) else {}:
+        file = path / name
         if not file.is_file():  # before ROS 2 Foxy, names began with the folder
-            file = path / Path(str(name)).name
-        if not file.resolve().is_relative_to(path.resolve()):
-            damages.note(path / METADATA, None, f"{str(name)!r} is outside the folder, and is left out")
-        elif not file.is_file():
-            damages.note(path / METADATA, None, f"there is no file {str(name)!r}, which it names")
+            file = path / Path(name).name
+        if not file.is_file():
+            damages.note(path / METADATA, None, f"there is no file {name!r}, which it names")
+        elif not file.resolve().is_relative_to(root):
+            damages.note(path / METADATA, None, f"{name!r} is outside the folder, and is left out")
         else:
             files.append(file)
     return files
@@ -125,7 +135,8 @@ def _named_files(path: Path, metadata: dict[str, Any], damages: Damages) -> list
 def _found_files(path: Path) -> list[Path]:
     """The files in a folder that can be read, in the order of their numbers: bag_2 comes before bag_10."""
     endings = (*_ENDINGS, *(ending + more for ending in _ENDINGS for more in _ZSTD))
-    return sorted((file for file in path.iterdir() if file.name.endswith(endings)), key=_number)
+    found = (file for file in path.iterdir() if file.name.endswith(endings) and file.is_file())
+    return sorted(found, key=_number)
 
 
 def _number(path: Path) -> tuple[int, str]:

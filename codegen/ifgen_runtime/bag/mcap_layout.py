@@ -12,7 +12,7 @@ from typing import BinaryIO, Final
 from ifgen_runtime.bag import mcap_records as records
 from ifgen_runtime.bag.checksum import crc32
 from ifgen_runtime.bag.compression import LARGEST, Undecodable, decompress
-from ifgen_runtime.bag.errors import BagError, Damages
+from ifgen_runtime.bag.errors import UNPACKS, BagError, Damages
 from ifgen_runtime.bag.mcap_records import (
     FOOTER,
     HEAD,
@@ -27,6 +27,9 @@ from ifgen_runtime.bag.mcap_records import (
 
 _RUN: Final = 2**22
 """Bytes of messages outside chunks that are read at once."""
+
+_RECORDS: Final = 300_000
+"""Records in chunks that any file may have, when the whole file has to be searched."""
 
 _HEAD_OF_CHUNK: Final = 256
 """Bytes that hold the head of a chunk's content, whatever its compression is called."""
@@ -81,6 +84,8 @@ class OpenFile:
     file: BinaryIO
     size: int
     damages: Damages
+    _unpacked: int = 0
+    _records: int = 0
 
     def read(self, offset: int, size: int) -> bytes:
         """Bytes of the file. Raises BadRecord if they are not all there."""
@@ -111,7 +116,9 @@ class OpenFile:
         return records.chunk(self.read(offset, min(length, _HEAD_OF_CHUNK)), offset, length)
 
     def chunk(self, head: ChunkHead) -> bytes:
-        """The records in a chunk. Raises BadRecord if they are damaged."""
+        """The records in a chunk. Raises BadRecord if they are damaged, or too many for this file."""
+        if LARGEST >= head.size > self.damages.most_unpacked(self.size):
+            raise BadRecord(f"a chunk unpacks to {head.size:,} bytes, {UNPACKS}")
         try:
             found = decompress(head.compression, self.read(head.data, head.data_size), head.size)
         except Undecodable as error:
@@ -119,6 +126,22 @@ class OpenFile:
         if head.crc and crc32(found) != head.crc:
             raise BadRecord("the checksum of a chunk does not fit its content")
         return found
+
+    def records_of_chunk(self, position: int, length: int) -> Iterator[tuple[int, bytes, int]]:
+        """The records in the chunk at this offset, while looking for what is in the file.
+
+        Raises BadRecord if they are damaged, or if all chunks so far are too much for a file of this size.
+        """
+        head = self.chunk_head(position + HEAD.size, length)
+        self._unpacked += head.size if head.size <= LARGEST else 0  # the next step refuses it
+        most, most_records = self.damages.most_unpacked(self.size), _RECORDS + self.size // 4
+        if self._unpacked > most:
+            raise BadRecord(f"its chunks unpack to more than {most:,} bytes, {UNPACKS}")
+        for record in records_in(self.chunk(head)):
+            self._records += 1
+            if self._records > most_records and not self.damages.unlimited:
+                raise BadRecord(f"its chunks unpack to more than {most_records:,} records, {UNPACKS}")
+            yield record
 
 
 def layout_of(file: OpenFile) -> Layout:
@@ -206,9 +229,7 @@ def _summary(file: OpenFile, summary: bytes, end: int) -> Layout | None:
             break
         if piece.is_chunk:
             _, length = file.head(piece.offset)
-            for opcode, content, _ in records_in(
-                file.chunk(file.chunk_head(piece.offset + HEAD.size, length))
-            ):
+            for opcode, content, _ in file.records_of_chunk(piece.offset, length):
                 if opcode == Opcode.SCHEMA:
                     layout.note(opcode, content)
     return layout
@@ -320,11 +341,9 @@ def _run_end(file: OpenFile, position: int) -> int:
 
 
 def _walk_chunk(file: OpenFile, position: int, length: int, layout: Layout) -> None:
-    head = file.chunk_head(position + HEAD.size, length)
-    data = file.chunk(head)
     times: list[int] = []
     channels: Counter[int] = Counter()
-    for opcode, content, _ in records_in(data):
+    for opcode, content, _ in file.records_of_chunk(position, length):
         if opcode == Opcode.MESSAGE:
             if len(content) < records.MESSAGE.size - HEAD.size:
                 raise BadRecord("a message is shorter than it can be")

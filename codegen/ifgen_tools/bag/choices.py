@@ -99,6 +99,7 @@ def play_options(**chosen: Any) -> PlayOptions:
         chosen["remap"],
         chosen["qos_overrides"],
         not chosen["disable_keyboard_controls"],
+        chosen["unlimited"],
         _request_events(chosen["publish_service_requests"], chosen["service_requests_source"]),
         chosen["wait_for_all_acked"] / 1000,
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +11,7 @@ from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
 
 from ifgen_tools.bag.output import whole
 from ifgen_tools.bag.reading import reading
+from ifgen_tools.bag.saying import show, warn
 from ifgen_tools.bag.selection import Selection, selection
 from ifgen_tools.errors import ToolError
 
@@ -62,7 +62,7 @@ def written(
     if not chosen:
         raise ToolError(f"nothing of {bag.path} is chosen", help="`ifgen bag info` shows its topics")
     if bag.attachments:
-        print(f"warning: {bag.attachments:,} attachments of {bag.path} are not copied", file=sys.stderr)
+        warn(f"{bag.attachments:,} attachments of {bag.path} are not copied")
     with (
         whole(output) as place,
         BagWriter(place, format, is_folder, limits or Limits(), name=output.name) as writer,
@@ -100,20 +100,29 @@ def _converted(data: bytes, convert: Callable[[bytes], bytes], topic: str) -> by
         ) from None
 
 
-def convert(path: Path, output: Path, format: Format, limits: Limits) -> int:
+def convert(path: Path, output: Path, format: Format, limits: Limits, *, unlimited: bool = False) -> int:
     """Write a bag in another format."""
-    with reading(path) as bag:
+    with reading(path, unlimited=unlimited) as bag:
         count = written(bag, output, format, Part(everything()), Passage, limits)
-    print(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
+    show(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
     return 0
 
 
-def cut(path: Path, output: Path, format: Format, choice: Selection, start: str, end: str) -> int:
+def cut(
+    path: Path,
+    output: Path,
+    format: Format,
+    choice: Selection,
+    start: str,
+    end: str,
+    *,
+    unlimited: bool = False,
+) -> int:
     """Write a part of a bag."""
-    with reading(path) as bag:
+    with reading(path, unlimited=unlimited) as bag:
         part = Part(choice, _time(bag, start, "--start"), _time(bag, end, "--end"))
         count = written(bag, output, format, part, Passage)
-    print(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
+    show(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
     return 0
 
 

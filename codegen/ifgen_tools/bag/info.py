@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen_tools.bag.reading import reading
+from ifgen_tools.bag.saying import inline, show
 from ifgen_tools.bag.selection import SERVICE_EVENTS, is_service_event
 
 if TYPE_CHECKING:
@@ -19,27 +20,27 @@ _UNITS: Final = ("B", "KiB", "MiB", "GiB", "TiB")
 _S: Final = 10**9
 
 
-def info(path: Path, *, topic_name: bool, verbose: bool, as_json: bool) -> int:
+def info(path: Path, *, topic_name: bool, verbose: bool, as_json: bool, unlimited: bool = False) -> int:
     """Print what is in a bag, as `ros2 bag info` does."""
-    with reading(path) as bag:
+    with reading(path, unlimited=unlimited) as bag:
         topics = [topic for topic in bag.topics.values() if not is_service_event(topic.name)]
         services = [topic for topic in bag.topics.values() if is_service_event(topic.name)]
         if as_json:
-            print(json.dumps(_document(bag), indent=2))
+            show(json.dumps(_document(bag), indent=2))
         elif topic_name:
             for topic in topics:
-                print(topic.name)
+                show(inline(topic.name))
         else:
-            print(_text(bag, topics, services, verbose))
+            show(_text(bag, topics, services, verbose))
     return 0
 
 
 def _text(bag: Bag, topics: list[Topic], services: list[Topic], verbose: bool) -> str:
     lines = [
-        ("Files:", _indented(file.name for file in bag.files)),
+        ("Files:", _indented(inline(file.name) for file in bag.files)),
         ("Bag size:", file_size(sum(file.stat().st_size for file in bag.files))),
         ("Storage id:", storage(bag.files)),
-        ("ROS Distro:", bag.ros_distro or "unknown"),
+        ("ROS Distro:", inline(bag.ros_distro) or "unknown"),
         ("Duration:", f"{_seconds((bag.end or 0) - (bag.start or 0))}s"),
         ("Start:", _time(bag.start or 0)),
         ("End:", _time(bag.end or 0)),
@@ -60,12 +61,12 @@ def _indented(lines: Any) -> str:
 
 def _topic(topic: Topic, verbose: bool) -> str:
     text = (
-        f"Topic: {topic.name} | Type: {topic.type_name} | Count: {topic.count} | "
-        f"Serialization Format: {topic.encoding}"
+        f"Topic: {inline(topic.name)} | Type: {inline(topic.type_name)} | Count: {topic.count} | "
+        f"Serialization Format: {inline(topic.encoding)}"
     )
     if not verbose:
         return text
-    hashes = ", ".join(definition.type_hash or "unknown" for definition in topic.definitions)
+    hashes = ", ".join(inline(definition.type_hash) or "unknown" for definition in topic.definitions)
     return f"{text} | Type Hash: {hashes}"
 
 

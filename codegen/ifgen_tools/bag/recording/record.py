@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import signal
-import sys
 import time
 from collections import Counter, deque
 from collections.abc import Callable, Mapping
@@ -16,6 +15,7 @@ from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
 
 from ifgen_tools.bag.keys import SPACE, Stop, keyboard, stoppable
 from ifgen_tools.bag.output import require_new, telling
+from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection
 from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
@@ -82,11 +82,6 @@ def record(
     return 0
 
 
-def say(text: str) -> None:
-    """Tell the user, beside what others may read from the output."""
-    print(text, file=sys.stderr, flush=True)
-
-
 class Recording:
     """A bag that is recorded by the node of a session."""
 
@@ -103,7 +98,7 @@ class Recording:
             command.ignore_leaves,
             command.use_sim_time,
         )
-        self.topics = TopicRecorder(session.node, options, self._open, say)
+        self.topics = TopicRecorder(session.node, options, self._open)
         self.topics.is_paused = command.is_paused
         self.writer = BagWriter(
             output, command.format, is_folder, command.limits, command.custom_data, on_split=_tell_split
@@ -207,9 +202,9 @@ class Recording:
         count = self.writer.count
         say(f"Recorded {count:,} message{'s' * (count != 1)} to {self._output}")
         for topic, lost in self.topics.lost.items():
-            say(f"warning: on the way here, {_messages(lost, topic)} lost")
+            warn(f"on the way here, {_messages(lost, topic)} lost")
         for topic, left in sorted(self._left.items()):
-            say(f"warning: {_messages(left, topic)} received, and not recorded: the disk was too slow")
+            warn(f"{_messages(left, topic)} received, and not recorded: the disk was too slow")
 
 
 def _messages(count: int, topic: str) -> str:

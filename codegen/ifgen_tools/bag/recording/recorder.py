@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
 from ifgen_tools.bag.qos import adapted_request
+from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection
 from ifgen_tools.errors import ToolError
 from ifgen_tools.types import WireType, class_with_hash
@@ -83,10 +84,10 @@ class _Source:
 class TopicRecorder:
     """Records what is chosen, each definition of a topic's type for itself."""
 
-    def __init__(self, node: Node, options: RecordOptions, open: Open, say: Callable[[str], None]) -> None:
-        """Subscribe with a node; `say` tells the user what happens."""
+    def __init__(self, node: Node, options: RecordOptions, open: Open) -> None:
+        """Subscribe with a node."""
         self.is_paused = False
-        self._node, self._options, self._open, self._say = node, options, open, say
+        self._node, self._options, self._open = node, options, open
         self._subscribed: dict[tuple[str, WireType], _Source] = {}
         self._asked: dict[tuple[str, WireType], Future[type[Any]]] = {}
         self._refused: dict[tuple[str, WireType], int] = {}
@@ -219,7 +220,7 @@ class TopicRecorder:
             return
         source = self._subscribed[key] = _Source(topic, subscription, record)
         write = self._open(topic, cls, offers)
-        self._say(f"Subscribed to topic '{topic}'")
+        say(f"Subscribed to topic '{topic}'")
 
     def _subscription(
         self, topic: str, cls: type[Any], record: Callable[[bytes, Any], None], profile: QoSProfile
@@ -249,7 +250,7 @@ class TopicRecorder:
     def _warn(self, text: str) -> None:
         if text not in self._warned:
             self._warned.add(text)
-            self._say(f"warning: {text}")
+            warn(text)
 
 
 _CONSEQUENCE: Final = {
