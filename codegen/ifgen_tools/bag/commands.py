@@ -263,7 +263,12 @@ def play(bag_path: Path, **chosen: Any) -> int:
 @_BAG
 @_UNLIMITED
 @click.option("-t", "--topic-name", is_flag=True, help="Only the names of topics.")
-@click.option("-v", "--verbose", is_flag=True, help="The hashes of types as well.")
+@click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="The hashes of types as well, and the requests and responses of services.",
+)
 @options.json_option
 @_accepted("-s", "--storage")
 def info(bag_path: Path, **chosen: Any) -> int:

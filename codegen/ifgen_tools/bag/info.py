@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 _INDENT: Final = 19
 _UNITS: Final = ("B", "KiB", "MiB", "GiB", "TiB")
 _S: Final = 10**9
+_EVENT: Final = 40
+"""Bytes of a ServiceEventInfo: its type, time, client and sequence number."""
+
+_RESPONSE, _LAST_KIND = 2, 3
+"""The first and the last type of an event that is about a response; those below are about requests."""
 
 
 def info(path: Path, *, topic_name: bool, verbose: bool, as_json: bool, unlimited: bool = False) -> int:
@@ -47,7 +52,7 @@ def _text(bag: Bag, topics: list[Topic], services: list[Topic], verbose: bool) -
         ("Messages:", str(sum(topic.count for topic in topics))),
         ("Topic information:", _indented(_topic(topic, verbose) for topic in topics)),
         ("Service:", str(len(services))),
-        ("Service information:", _indented(_service(topic) for topic in services)),
+        ("Service information:", _indented(_service(bag, topic, verbose) for topic in services)),
     ]
     return "\n" + "\n".join(
         (f"{name:<{_INDENT}}{value}" if len(name) < _INDENT else f"{name} {value}").rstrip()
@@ -70,12 +75,26 @@ def _topic(topic: Topic, verbose: bool) -> str:
     return f"{text} | Type Hash: {hashes}"
 
 
-def _service(topic: Topic) -> str:
+def _service(bag: Bag, topic: Topic, verbose: bool) -> str:
     type_name = topic.type_name.removesuffix("_Event")
+    count = f"Event Count: {topic.count}"
+    if verbose:
+        requests, responses = _calls(bag, topic.name)
+        count = f"Request Count: {requests} | Response Count: {responses}"
     return (
-        f"Service: {topic.name.removesuffix(SERVICE_EVENTS)} | Type: {type_name} | "
-        f"Event Count: {topic.count} | Serialization Format: {topic.encoding}"
+        f"Service: {inline(topic.name.removesuffix(SERVICE_EVENTS))} | Type: {inline(type_name)} | "
+        f"{count} | Serialization Format: {inline(topic.encoding)}"
     )
+
+
+def _calls(bag: Bag, topic: str) -> tuple[int, int]:
+    """How many requests and responses the events are about. Client and server may both tell of one."""
+    found: tuple[set[bytes], set[bytes]] = set(), set()
+    for _, _, _, data in bag.entries(topic):
+        event = data[4 : 4 + _EVENT]  # after the head of CDR: the type, the time, then whose call it is
+        if len(event) == _EVENT and event[0] <= _LAST_KIND:
+            found[event[0] >= _RESPONSE].add(event[12:])
+    return len(found[0]), len(found[1])
 
 
 def storage(files: list[Path] | tuple[Path, ...]) -> str:

@@ -119,9 +119,11 @@ class Recording:
             try:
                 legend = f" ({keys.legend})" if keys.legend else ""
                 say(f"Recording to {self._output}. Press Ctrl-C to stop{legend}")
-                say("Listening for topics...")  # what rosbag2 says: launch files wait for it
+                say("Listening for topics...")  # launch files and tests wait for these words of rosbag2
                 self._session.discover()
                 self.topics.look()
+                if not self.topics.is_paused:
+                    say("Recording...")  # and for these
                 if command.has_discovery:
                     self._look_again(self._session.node, command.interval)
                 while self._session.context.ok() and not stop.number and not is_done(self):
