@@ -63,7 +63,7 @@ def opened(path: Path, damages: Damages) -> Recording:
 
 
 def _kind(path: Path) -> str:
-    """What a path is that is neither a file nor a folder, in words."""
+    """The kind of a path that is neither a file nor a folder, in words."""
     kinds = {"a pipe": path.is_fifo(), "a socket": path.is_socket()}
     return next((kind for kind, is_this in kinds.items() if is_this), "a device")
 

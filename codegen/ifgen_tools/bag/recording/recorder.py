@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _DEPTH: Final = 100_000
 """Messages of a topic that may wait while others are taken: a burst must not be lost."""
 
-_AT_ONCE: Final = 200
+_AT_ONCE: Final = 5000
 """Messages of a topic that are taken before others get their turn."""
 
 _BYTES_AT_ONCE: Final = 2**20
