@@ -82,7 +82,7 @@ $(VENV)/.run: pyproject.toml $(wildcard codegen/*/pyproject.toml) .ci/make_venv.
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run $(VENV)/.native
-	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[net,sim,tools]' --group dev --group $(REFERENCE)
+	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim,tools]' --group dev --group $(REFERENCE)
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.

@@ -84,7 +84,7 @@ def interop(
     One side is a node on our local transport, the other a small program on the public API of dora-rs,
     zenoh-ros2-sdk, pyzeros, or pamoja-ros2, and real rclpy on DDS (Jazzy, Kilted) behind a bridge of dora-rs.
     A router on a free port of this machine is between them. Exits with 1 if something fails that should work.
-    What is not installed does not fail. It needs the extra `net`.
+    What is not installed does not fail.
     """
     from ifgen.interop.environments import install as install_peer
     from ifgen.interop.matrix import Matrix
