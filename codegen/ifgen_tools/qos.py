@@ -92,9 +92,10 @@ def profile_of(chosen: dict[str, Any], default: str) -> QoSProfile:
 def fitting(profile: QoSProfile, publishers: Sequence[TopicEndpointInfo]) -> list[str]:
     """Let a profile fit all publishers, and return what has to be said about it."""
     return [
-        f"Some, but not all, publishers are offering QoS{policy.capitalize()}Policy.{strong}. Falling back to "
-        f"QoS{policy.capitalize()}Policy.{weak} as it will connect to all publishers"
+        f"Some, but not all, publishers are offering {kind}.{strong}. Falling back to "
+        f"{kind}.{weak} as it will connect to all publishers"
         for policy, strong, weak in fit(profile, [info.qos_profile for info in publishers])
+        for kind in (f"QoS{policy.capitalize()}Policy",)
     ]
 
 
