@@ -13,6 +13,7 @@ import pytest
 from ifgen_runtime.bag import Bag, BagError, BagWarning, Definition
 from ifgen_runtime.bag.topics import Channel
 from ifgen_runtime.bag.writer import BagWriter, Format
+from mcap.reader import make_reader
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapWriter
 
@@ -214,3 +215,58 @@ def test_a_definition_that_is_nowhere(tmp_path: Path) -> None:
     writer.add_message(channel, 1, b"\0\1\0\0\2\0\0\0a\0", 1)
     writer.finish()
     assert any("the definition of the messages of /log is not in the file" in each for each in read(path)[1])
+
+
+def test_messages_without_a_definition_stay_so(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    writer = McapWriter(str(path))
+    writer.start("ros2", "a test")
+    writer.add_message(writer.register_channel("/log", "json", 0), 1, b"{}", 1)
+    writer.finish()
+    with Bag(path, strict=True) as bag, BagWriter(tmp_path / "b.mcap", Format(), is_folder=False) as copy:
+        for received, published, channel, data in bag.entries():
+            copy.write(channel, received, published, data)
+    with (tmp_path / "b.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    assert summary.schemas == {}
+    assert [(channel.schema_id, channel.message_encoding) for channel in summary.channels.values()] == [
+        (0, "json")
+    ]
+
+
+def test_bytes_of_definitions_are_copied(tmp_path: Path) -> None:
+    """Those of other encodings are no text."""
+    path, text = tmp_path / "a.mcap", bytes(range(256))
+    writer = McapWriter(str(path))
+    writer.start("", "a test")
+    writer.add_message(
+        writer.register_channel("/a", "protobuf", writer.register_schema("a.B", "protobuf", text)), 1, b"", 1
+    )
+    writer.finish()
+    with Bag(path, strict=True) as bag:
+        (channel,) = bag.channels
+        with BagWriter(tmp_path / "b.mcap", Format(), is_folder=False) as copy:
+            copy.add(channel)
+        with pytest.raises(BagError, match="a database has no room for bytes that are no text"):
+            BagWriter(tmp_path / "b.db3", Format("sqlite3"), is_folder=False).add(channel)
+    with (tmp_path / "b.mcap").open("rb") as file:
+        summary = make_reader(file).get_summary()
+    assert summary is not None
+    assert [schema.data for schema in summary.schemas.values()] == [text]
+
+
+def test_two_definitions_without_hashes_are_not_made_one(tmp_path: Path) -> None:
+    definitions = [Definition("a/msg/B", "", "ros2msg", f"uint{size} data\n") for size in (8, 16)]
+    with (
+        pytest.raises(BagError, match="room for one definition of a/msg/B without a hash, and there are two"),
+        BagWriter(tmp_path / "a.db3", Format("sqlite3"), is_folder=False) as writer,
+    ):
+        for index, definition in enumerate(definitions):
+            writer.add(Channel(f"/{index}", definition))
+    hashed = [Definition("a/msg/B", f"RIHS01_{size}", "ros2msg", f"uint{size} data\n") for size in (8, 16)]
+    with BagWriter(tmp_path / "b.db3", Format("sqlite3"), is_folder=False) as writer:
+        for index, definition in enumerate(hashed):
+            writer.add(Channel(f"/{index}", definition))
+    with Bag(tmp_path / "b.db3", strict=True) as bag:
+        assert [channel.definition for channel in bag.channels] == hashed

@@ -76,6 +76,9 @@ class SqliteFile:
                 f"{self._path}: this is no bag: it has no table {' and no table '.join(sorted(missing))}"
             )
         self._tables = plain
+        for table in ("topics", "messages", "message_definitions"):
+            if any(row[-1] > 1 for row in self._rows(f"PRAGMA table_xinfo({table})")):
+                raise BagError(f"{self._path}: this is no bag: columns of its table {table} are computed")
 
     def _columns(self, table: str) -> set[str]:
         return (

@@ -133,6 +133,8 @@ class _McapFileWriter:
             return
         definition = channel.definition
         schema = self._schemas.get(definition)
+        if not definition.type_name and not definition.text:
+            schema = 0  # the way of MCAP to say that there is none
         if schema is None:
             encoding = definition.encoding or "ros2msg"
             schema = self._writer.add_schema(definition.type_name, encoding, definition.text)
