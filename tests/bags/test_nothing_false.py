@@ -76,7 +76,7 @@ def test_databases_that_are_cut_off(tmp_path: Path) -> None:
     whole = written(path, Format("sqlite3"))
     data = path.read_bytes()
     pages = len(data) // 4096
-    cuts = {4096 * page + inside for page in range(1, pages) for inside in (0, 1, 3, 5, 100, 2000, 4095)}
+    cuts = {4096 * page + inside for page in range(1, pages) for inside in (0, 3, 100 + 17 * page)}
     for size in sorted(cuts):
         path.write_bytes(data[:size])
         found, damage = read(path)
@@ -127,7 +127,7 @@ def test_flipped_bits_and_cuts(tmp_path: Path, name: str) -> None:
     for file in files:
         data = file.read_bytes()
         is_database = file.suffix == ".db3"
-        for place in chance.sample(range(len(data)), min(len(data), 60)):
+        for place in chance.sample(range(len(data)), min(len(data), 25)):
             changed = bytearray(data)
             changed[place] ^= 1 << chance.randrange(8)
             if not is_database:  # its pages have no checksums; that of each message is checked below
@@ -143,7 +143,7 @@ def test_compressed_messages_have_checksums(tmp_path: Path) -> None:
     whole = written(path, FORMATS["folder"], 25)
     (file,) = path.glob("*.db3")
     data, chance = file.read_bytes(), random.Random(3)
-    for _ in range(60):
+    for _ in range(20):
         changed = bytearray(data)
         topic, received, content = chance.choice(whole[4:])
         at = data.find(content[-60:-40])
