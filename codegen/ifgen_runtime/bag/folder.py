@@ -73,7 +73,7 @@ def _open_folder(path: Path, recording: Recording, damages: Damages) -> None:
     files = _named_files(path, metadata, damages) or _found_files(path)
     if not files:
         raise BagError(f"{path}: this is no bag: there is no .mcap and no .db3 file in the folder")
-    if metadata.get("compression_mode", "").upper() == "MESSAGE":
+    if str(metadata.get("compression_mode")).upper() == "MESSAGE":
         recording.compression = str(metadata.get("compression_format", ""))
     recording.ros_distro = str(metadata.get("ros_distro") or "")
     for name, about in _topics(metadata):
