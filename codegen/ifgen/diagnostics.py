@@ -6,6 +6,7 @@ How they look (a terminal, JSON, CI annotations) is `cli/report.py`'s business.
 
 from __future__ import annotations
 
+import unicodedata
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -140,3 +141,20 @@ def shown_path(path: Path) -> str:
         return str(path.absolute().relative_to(Path.cwd()))
     except (ValueError, OSError):
         return str(path)
+
+
+def shown_character(character: str) -> str:
+    """The character as a terminal may get it: four spaces for a tab, a picture for what could steer it."""
+    if character == "\t":
+        return "    "
+    if character < " ":
+        return chr(0x2400 + ord(character))  # the picture of a control character: U+241B for an escape
+    category = unicodedata.category(character)
+    return "\N{REPLACEMENT CHARACTER}" if category in {"Cc", "Cf", "Cs", "Zl", "Zp"} else character
+
+
+def printable(text: str) -> str:
+    """Text from an input file or path without anything that could steer a terminal."""
+    if text.isascii() and text.replace("\n", "").isprintable():
+        return text
+    return "".join(c if c == "\n" else shown_character(c) for c in text)

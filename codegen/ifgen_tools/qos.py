@@ -90,28 +90,35 @@ def profile_of(chosen: dict[str, Any], default: str) -> QoSProfile:
 
 
 def fitting(profile: QoSProfile, publishers: Sequence[TopicEndpointInfo]) -> list[str]:
-    """Let a profile fit all publishers: reliable, or transient local, only if all of them are.
+    """Let a profile fit all publishers, and return what has to be said about it."""
+    return [
+        f"Some, but not all, publishers are offering {kind}.{strong}. Falling back to "
+        f"{kind}.{weak} as it will connect to all publishers"
+        for policy, strong, weak in fit(profile, [info.qos_profile for info in publishers])
+        for kind in (f"QoS{policy.capitalize()}Policy",)
+    ]
 
-    Returns what has to be said about it.
+
+def fit(profile: QoSProfile, offers: Sequence[QoSProfile]) -> list[tuple[str, str, str]]:
+    """Let a profile fit all offers: reliable, or transient local, only if all of them are.
+
+    Returns the policies on which they do not agree: the name, the value of some, and the one that is taken.
     """
     from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 
-    remarks: list[str] = []
-    policies: tuple[tuple[str, Any, Any, str], ...] = (
-        ("reliability", ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT, "QoSReliabilityPolicy"),
-        ("durability", DurabilityPolicy.TRANSIENT_LOCAL, DurabilityPolicy.VOLATILE, "QoSDurabilityPolicy"),
+    mixed: list[tuple[str, str, str]] = []
+    policies: tuple[tuple[str, Any, Any], ...] = (
+        ("reliability", ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT),
+        ("durability", DurabilityPolicy.TRANSIENT_LOCAL, DurabilityPolicy.VOLATILE),
     )
-    for policy, strong, weak, kind in policies:
-        offering = [getattr(info.qos_profile, policy) == strong for info in publishers]
+    for policy, strong, weak in policies:
+        offering = [getattr(offer, policy) == strong for offer in offers]
         if not offering:
             continue
         setattr(profile, policy, strong if all(offering) else weak)
         if any(offering) and not all(offering):
-            remarks.append(
-                f"Some, but not all, publishers are offering {kind}.{strong.name}. Falling back to "
-                f"{kind}.{weak.name} as it will connect to all publishers"
-            )
-    return remarks
+            mixed.append((policy, strong.name, weak.name))
+    return mixed
 
 
 def teller_of_obstacles(

@@ -241,3 +241,42 @@ def test_overwriting_replaces_a_bag(tmp_path: Path) -> None:
         with Bag(tmp_path / name) as bag:
             assert [message.data for message in bag["/log"]] == ["new"]
             assert list(bag.topics) == ["/log"]
+
+
+def test_a_bag_that_nobody_holds_is_read_to_its_end(tmp_path: Path) -> None:
+    path = record(tmp_path / "run.mcap", chunk_size=1)
+    assert sum(1 for _ in Bag(path)) == 12
+    assert list(Bag(path)["/imu"]) == [imu(index) for index in range(10)]
+    assert [one.topic for one in Bag(path).recorded("/log")] == ["/log"] * 2
+
+
+def test_databases(tmp_path: Path) -> None:
+    path = record(tmp_path / "run.db3")
+    assert path.is_file()
+    with Bag(path, strict=True) as bag:
+        assert list(bag["/imu"]) == [imu(index) for index in range(10)]
+    with pytest.raises(BagError, match="only an MCAP file has room for metadata="):
+        Recorder(tmp_path / "other.db3", metadata={"robot": "walker"})
+    with pytest.raises(
+        BagError, match=r"x\.bag is the name of a file, and ifgen writes none that ends in \.bag"
+    ):
+        Recorder(tmp_path / "x.bag")
+
+
+def test_metadata_is_written_although_closing_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    recorder = Recorder(tmp_path / "run")
+    recorder.write("/log", text("a"), received=5)
+    recorder.flush()
+    recorder.write("/log", text("b"), received=6)
+
+    def full(*_: Any) -> int:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("ifgen_runtime.bag.mcap_writer._write", full)
+    with pytest.raises(
+        BagError, match=r"cannot be written any further: No space left on device\. It has 1 messages"
+    ):
+        recorder.close()
+    metadata = (tmp_path / "run/metadata.yaml").read_text()
+    assert "\n  message_count: 1\n" in metadata, "what is in the file, not what was to be"
+    assert [path.name for path in sorted((tmp_path / "run").iterdir())] == ["metadata.yaml", "run_0.mcap"]

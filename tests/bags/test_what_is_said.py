@@ -271,6 +271,9 @@ def test_databases_of_others(tmp_path: Path) -> None:
     made("id, word", "")
     with pytest.raises(BagError, match=r"a\.db3: this is no bag: its table of topics has other columns"):
         Bag(path)
+    made("id, name, type, serialization_format, more AS (hex(zeroblob(9)))", "")
+    with pytest.raises(BagError, match=r"a\.db3: this is no bag: columns of its table topics are computed"):
+        Bag(path)
     for row in ("1, 1, 'noon', x'00'", "1, 1, 4, NULL"):
         made("id, name, type, serialization_format", row)
         with pytest.warns(BagWarning, match="message 1 has no time, or no content"), Bag(path) as bag:
@@ -325,7 +328,7 @@ def test_a_full_folder_for_temporary_files(
     def full(*_: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(zstandard, "ZstdDecompressor", type("Full", (), {"copy_stream": full}))
+    monkeypatch.setattr(zstandard, "ZstdDecompressor", type("Full", (), {"read_to_iter": full}))
     monkeypatch.setattr(compression.tempfile, "tempdir", str(tmp_path))
     says = (
         rf"a\.mcap\.zstd: cannot be decompressed into {tmp_path}, which has [\d,]+ bytes free: No space left"

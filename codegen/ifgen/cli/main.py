@@ -26,6 +26,7 @@ from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import transport as transport_option
 from ifgen.config.settings import settle
+from ifgen.diagnostics import printable
 from ifgen.writing.interruption import terminable
 
 if TYPE_CHECKING:
@@ -59,7 +60,7 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
         print(error.format_message(), file=sys.stderr)
         return error.exit_code
     except click.ClickException as error:
-        print("\n".join(_told(error)), file=sys.stderr)
+        print(printable("\n".join(_told(error))), file=sys.stderr)
         return error.exit_code
 
 

@@ -13,12 +13,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
-from ifgen.diagnostics import Diagnostic, Label, Source, shown_path, shown_source
+from ifgen.diagnostics import Diagnostic, Label, Source, printable, shown_character, shown_path, shown_source
 
 if TYPE_CHECKING:
     from rich.text import Text
 
-_TAB = "    "
 _GUTTER_STYLE = "bold blue"
 _SEVERITY_STYLE = {"error": "bold red", "warning": "bold yellow"}
 _SECONDARY_STYLE = "bold cyan"
@@ -164,7 +163,7 @@ class _LineView:
     """A source line as the terminal shows it: tabs and wide characters measured, cropped around a label."""
 
     def __init__(self, line: str, focus: Label, width: int) -> None:
-        self._cells = [_shown(character) for character in line]
+        self._cells = [shown_character(character) for character in line]
         self._left = [0]
         for cell in self._cells:
             self._left.append(self._left[-1] + _cell_width(cell))
@@ -198,20 +197,6 @@ class _LineView:
         return first, last
 
 
-def _shown(character: str) -> str:
-    if character == "\t":
-        return _TAB
-    if character < " ":
-        return chr(0x2400 + ord(character))  # the picture of a control character: U+241B for an escape
-    category = unicodedata.category(character)
-    return "\N{REPLACEMENT CHARACTER}" if category in {"Cc", "Cf", "Cs", "Zl", "Zp"} else character
-
-
-def printable(text: str) -> str:
-    """Text from an input file or path without anything that could steer a terminal."""
-    return "".join(c if c == "\n" else _shown(c) for c in text)
-
-
 def _cell_width(cell: str) -> int:
     if cell.isascii():
         return len(cell)
@@ -221,7 +206,7 @@ def _cell_width(cell: str) -> int:
 
 
 def _text_width(text: str) -> int:
-    return sum(map(_cell_width, map(_shown, text)))
+    return sum(map(_cell_width, map(shown_character, text)))
 
 
 def wrapped(text: str, width: int, indent: int = 0) -> str:

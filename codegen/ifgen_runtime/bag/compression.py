@@ -8,10 +8,13 @@ import tempfile
 from pathlib import Path
 from typing import Any, Final
 
-from ifgen_runtime.bag.errors import BagError, need
+from ifgen_runtime.bag.errors import UNPACKS, BagError, Damages, need
 
 LARGEST: Final = 2**31
 """Bytes of a chunk or of a message that we are ready to read."""
+
+ZSTD: Final = b"\x28\xb5\x2f\xfd"
+"""The beginning of what is compressed with zstd."""
 
 _PROMISE: Final = 2**26
 """Bytes that a compressed chunk may promise without more ado."""
@@ -60,8 +63,8 @@ def _in_blocks(stream: Any, data: bytes, size: int | None) -> bytes:
     """Decompress piece by piece, so that memory is taken for bytes that are really there."""
     found = bytearray()
     limit = LARGEST if size is None else size
-    for start in range(0, len(data), 1 << 12):
-        found += stream.decompress(data[start : start + (1 << 12)])
+    for start in range(0, len(data), 1 << 10):
+        found += stream.decompress(data[start : start + (1 << 10)])
         if len(found) > limit:
             raise Undecodable(f"it holds more than {limit:,} bytes")
     return bytes(found)
@@ -80,20 +83,26 @@ def _lz4(data: bytes, size: int | None) -> bytes:
         raise Undecodable(f"lz4: {error}") from None
 
 
-def decompressed_file(path: Path) -> Path:
+def decompressed_file(path: Path, damages: Damages) -> Path:
     """A temporary file with what a file holds that `ros2 bag record` compressed with zstd as a whole.
 
-    What comes before damage is kept. Raises BagError if nothing can be read, or the disk is full.
+    What comes before damage is kept, and the damage noted. Raises BagError if nothing can be read, or the
+    disk is full.
     """
     zstandard = need("zstandard", f"reading {path}")
     descriptor, name = tempfile.mkstemp(prefix="ifgen-bag-", suffix=path.with_suffix("").suffix)
     try:
         with os.fdopen(descriptor, "wb") as out, path.open("rb") as file:
+            most = damages.most_unpacked(path.stat().st_size)
             try:
-                zstandard.ZstdDecompressor().copy_stream(file, out)
+                for block in zstandard.ZstdDecompressor().read_to_iter(file):
+                    if out.tell() + len(block) > most:
+                        raise BagError(f"{path}: this unpacks to more than {most:,} bytes, {UNPACKS}")
+                    out.write(block)
             except zstandard.ZstdError as error:
                 if not out.tell():
                     raise BagError(f"{path}: this is no file compressed with zstd: {error}") from None
+                damages.note(path, None, f"zstd: {error}; a message may be missing, or not what was recorded")
     except OSError as error:
         Path(name).unlink(missing_ok=True)
         folder = tempfile.gettempdir()

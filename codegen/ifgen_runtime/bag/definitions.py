@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterator
 from typing import Any, Final
 
+from ifgen_runtime.bag.topics import Definition
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
-from ifgen_runtime.type_description import sources, type_name
+from ifgen_runtime.type_description import sources, type_hash, type_name
 
 _SEPARATOR: Final = re.compile(r"^={80}\n(?:MSG|IDL): (\S+)[ \t]*\n", re.MULTILINE)
 _FIELD: Final = re.compile(r"(?P<type>[\w/\[\]<=]+)\s+(?P<name>\w+)\s*(?P<rest>.*)")
@@ -35,6 +36,17 @@ def full_name(short: str, package: str = "") -> str:
     if len(parts) == 1:
         return "std_msgs/msg/Header" if short == "Header" else f"{package}/msg/{short}"
     return f"{parts[0]}/msg/{parts[1]}" if len(parts) == 2 else short
+
+
+def type_in(name: str) -> str:
+    """The name of a type as a file has it; some writers leave `msg` out."""
+    return full_name(name) if name.count("/") == 1 else name
+
+
+def definition_of(cls: type[Any]) -> Definition:
+    """The definition of a message class, as bags have it."""
+    generated = next((of for of in cls.__mro__ if "__type_hash__" in vars(of)), cls)  # of one with checks
+    return Definition(type_name(generated), type_hash(generated), "ros2msg", full_text(generated))
 
 
 def full_text(cls: type[Any]) -> str:

@@ -6,7 +6,13 @@ import warnings
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
+
+UNPACKS: Final = "more than ifgen reads of a file of this size without `unlimited`"
+"""The end of the reason why a file is not read that unpacks to far more than its size."""
+
+_MOST: Final = 1000
+"""Places of damage that are listed."""
 
 
 class BagError(Exception):
@@ -36,18 +42,30 @@ class Damage:
 class Damages:
     """The damage that was met in a recording: said once each, or raised where reading is strict."""
 
-    def __init__(self, strict: bool) -> None:
-        self.strict = strict
-        self.found: list[Damage] = []
+    def __init__(self, strict: bool, unlimited: bool = False) -> None:
+        self.strict, self.unlimited = strict, unlimited
+        self._found: dict[Damage, None] = {}
+
+    @property
+    def found(self) -> tuple[Damage, ...]:
+        """The damage that was met so far."""
+        return tuple(self._found)
+
+    def most_unpacked(self, size: int) -> int:
+        """The bytes that we let a file of `size` bytes unpack to, unless whoever asks trusts it."""
+        return 2**63 if self.unlimited else 2**25 + 32 * size
 
     def note(self, path: Path, offset: int | None, text: str) -> None:
         """Raise BagError if reading is strict; otherwise warn, once for each place."""
         damage = Damage(path, offset, text)
         if self.strict:
             raise BagError(str(damage))
-        if damage not in self.found:
-            self.found.append(damage)
-            warn(str(damage))
+        if damage in self._found or len(self._found) > _MOST:
+            return
+        if len(self._found) == _MOST:
+            damage = Damage(path, None, "there is more damage, which is not listed")
+        self._found[damage] = None
+        warn(str(damage))
 
 
 def warn(text: str) -> None:

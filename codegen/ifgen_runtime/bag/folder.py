@@ -9,10 +9,10 @@ from typing import Any, Final, cast
 from ifgen_runtime.bag.compression import decompressed_file
 from ifgen_runtime.bag.errors import BagError, Damages
 from ifgen_runtime.bag.mcap_file import McapFile
+from ifgen_runtime.bag.metadata import METADATA
 from ifgen_runtime.bag.qos import OfferedQoS, parsed, profiles_of
 from ifgen_runtime.bag.topics import Source
 
-METADATA: Final = "metadata.yaml"
 _ENDINGS: Final = (".mcap", ".db3")
 _ZSTD: Final = (".zstd", ".zst")
 
@@ -46,8 +46,11 @@ def opened(path: Path, damages: Damages) -> Recording:
     try:
         if path.is_dir():
             _open_folder(path, recording, damages)
-        elif path.exists():
+        elif path.is_file():
             recording.sources.append(_file(path, recording, damages))
+        elif path.exists():
+            text = f"{path}: this is no bag: it is {_kind(path)}, and a file or a folder was expected"
+            raise BagError(text)
         else:
             raise BagError(f"{path}: there is no such file or folder")
     except OSError as error:
@@ -59,12 +62,18 @@ def opened(path: Path, damages: Damages) -> Recording:
     return recording
 
 
+def _kind(path: Path) -> str:
+    """The kind of a path that is neither a file nor a folder, in words."""
+    kinds = {"a pipe": path.is_fifo(), "a socket": path.is_socket()}
+    return next((kind for kind, is_this in kinds.items() if is_this), "a device")
+
+
 def _open_folder(path: Path, recording: Recording, damages: Damages) -> None:
     metadata = _metadata(path / METADATA, damages)
     files = _named_files(path, metadata, damages) or _found_files(path)
     if not files:
         raise BagError(f"{path}: this is no bag: there is no .mcap and no .db3 file in the folder")
-    if metadata.get("compression_mode", "").upper() == "MESSAGE":
+    if str(metadata.get("compression_mode")).upper() == "MESSAGE":
         recording.compression = str(metadata.get("compression_format", ""))
     recording.ros_distro = str(metadata.get("ros_distro") or "")
     for name, about in _topics(metadata):
@@ -81,7 +90,7 @@ def _open_folder(path: Path, recording: Recording, damages: Damages) -> None:
 
 def _metadata(path: Path, damages: Damages) -> dict[str, Any]:
     """The contents of `metadata.yaml`. After a crash there is none, and the files are all."""
-    if not path.exists():
+    if not path.is_file():
         return {}
     try:
         loaded = parsed(path.read_text("utf-8"))
@@ -108,15 +117,16 @@ def _topics(metadata: dict[str, Any]) -> list[tuple[str, dict[str, Any]]]:
 def _named_files(path: Path, metadata: dict[str, Any], damages: Damages) -> list[Path]:
     """The files that the metadata names, which have to be in the folder."""
     files: list[Path] = []
+    root = path.resolve()
     listed: object = metadata.get("relative_file_paths")
-    for name in cast("list[object]", listed) if isinstance(listed, list) else []:
-        file = path / str(name)
+    for name in dict.fromkeys(map(str, cast("list[object]", listed))) if isinstance(listed, list) else {}:
+        file = path / name
         if not file.is_file():  # before ROS 2 Foxy, names began with the folder
-            file = path / Path(str(name)).name
-        if not file.resolve().is_relative_to(path.resolve()):
-            damages.note(path / METADATA, None, f"{str(name)!r} is outside the folder, and is left out")
-        elif not file.is_file():
-            damages.note(path / METADATA, None, f"there is no file {str(name)!r}, which it names")
+            file = path / Path(name).name
+        if not file.is_file():
+            damages.note(path / METADATA, None, f"there is no file {name!r}, which it names")
+        elif not file.resolve().is_relative_to(root):
+            damages.note(path / METADATA, None, f"{name!r} is outside the folder, and is left out")
         else:
             files.append(file)
     return files
@@ -125,7 +135,8 @@ def _named_files(path: Path, metadata: dict[str, Any], damages: Damages) -> list
 def _found_files(path: Path) -> list[Path]:
     """The files in a folder that can be read, in the order of their numbers: bag_2 comes before bag_10."""
     endings = (*_ENDINGS, *(ending + more for ending in _ENDINGS for more in _ZSTD))
-    return sorted((file for file in path.iterdir() if file.name.endswith(endings)), key=_number)
+    found = (file for file in path.iterdir() if file.name.endswith(endings) and file.is_file())
+    return sorted(found, key=_number)
 
 
 def _number(path: Path) -> tuple[int, str]:
@@ -136,14 +147,17 @@ def _number(path: Path) -> tuple[int, str]:
 def _file(path: Path, recording: Recording, damages: Damages) -> Source:
     recording.files.append(path)
     if path.suffix in _ZSTD:
-        path = decompressed_file(path)
+        path = decompressed_file(path, damages)
         recording.temporary.append(path)
     with path.open("rb") as file:
         beginning = file.read(16)
     if beginning.startswith(b"SQLite format 3") or path.suffix == ".db3":
         from ifgen_runtime.bag.sqlite_file import SqliteFile  # with sqlite3, which MCAP does not need
 
-        return SqliteFile(path, damages, recording.hashes)
+        source = SqliteFile(path, damages, recording.hashes)
+        if source.has_compressed_messages:  # after a crash there is no metadata that says so
+            recording.compression = recording.compression or "zstd"
+        return source
     if beginning.startswith(b"\x89MCAP") or path.suffix == ".mcap":
         return McapFile(path, damages, recording.hashes)
     if beginning.startswith(b"#ROSBAG"):

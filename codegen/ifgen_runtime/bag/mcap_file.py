@@ -8,8 +8,9 @@ from itertools import pairwise
 from operator import itemgetter
 from pathlib import Path
 
+from ifgen_runtime.bag.definitions import type_in
 from ifgen_runtime.bag.errors import BagError, Damages
-from ifgen_runtime.bag.mcap_layout import Layout, OpenFile, Piece, layout_of, opened
+from ifgen_runtime.bag.mcap_layout import Layout, OpenFile, Piece, layout_of, opened, wrong_checksums
 from ifgen_runtime.bag.mcap_records import HEAD, MESSAGE, BadRecord, ChannelRecord, Opcode
 from ifgen_runtime.bag.qos import read_qos
 from ifgen_runtime.bag.topics import Batch, Channel, Definition, Entry, Wanted
@@ -33,6 +34,8 @@ class McapFile:
         except BagError:
             self.close()
             raise
+        self._layout: Layout | None = layout
+        self.attachments = len(layout.attachments)
         self._pieces = sorted(layout.pieces, key=lambda piece: (piece.start, piece.offset))
         self._by_number = {n: _channel(record, layout, hashes) for n, record in layout.channels.items()}
         self.channels = {channel: layout.counts[number] for number, channel in self._by_number.items()}
@@ -41,6 +44,7 @@ class McapFile:
 
     def batches(self, wanted: Wanted) -> Iterator[Batch]:
         """The messages in the order in which they were received, a chunk at a time."""
+        self._check()
         channels = {n: channel for n, channel in self._by_number.items() if wanted.has_topic(channel.topic)}
         pieces = [piece for piece in self._pieces if _may_have(piece, wanted, channels)]
         waiting: list[Entry] = []  # they may come after some of the next chunk
@@ -58,6 +62,17 @@ class McapFile:
             waiting = entries[ready:]
             if ready:
                 yield Batch.of(entries[:ready])
+
+    def _check(self) -> None:
+        """Compare the checksums that are not those of chunks, once, before the first message is read."""
+        file, layout, self._layout = self._file, self._layout, None
+        if layout is None:
+            return
+        try:
+            for offset, text in wrong_checksums(file, layout):
+                file.damages.note(file.path, offset, text)
+        except BadRecord as error:
+            file.damages.note(file.path, None, str(error))
 
     def _batch(self, piece: Piece, channels: dict[int, Channel], wanted: Wanted) -> Batch:
         """The messages of a piece, up to damage in it."""
@@ -141,9 +156,10 @@ def _channel(record: ChannelRecord, layout: Layout, hashes: Mapping[str, str]) -
     if schema is None:
         definition = Definition("", type_hash)
     else:
-        text = schema.data.decode("utf-8", "replace")
+        # Any bytes: a copy has to have the same ones.
+        text = schema.data.decode("utf-8", "surrogateescape")
         encoding = schema.encoding if text else ""
-        definition = Definition(schema.name, type_hash, encoding, text)
+        definition = Definition(type_in(schema.name), type_hash, encoding, text)
     return Channel(
         record.topic, definition, read_qos(metadata.get("offered_qos_profiles", "")), record.encoding
     )

@@ -12,7 +12,7 @@ from typing import BinaryIO, Final
 from ifgen_runtime.bag import mcap_records as records
 from ifgen_runtime.bag.checksum import crc32
 from ifgen_runtime.bag.compression import LARGEST, Undecodable, decompress
-from ifgen_runtime.bag.errors import BagError, Damages
+from ifgen_runtime.bag.errors import UNPACKS, BagError, Damages
 from ifgen_runtime.bag.mcap_records import (
     FOOTER,
     HEAD,
@@ -27,6 +27,9 @@ from ifgen_runtime.bag.mcap_records import (
 
 _RUN: Final = 2**22
 """Bytes of messages outside chunks that are read at once."""
+
+_RECORDS: Final = 300_000
+"""Records in chunks that any file may have, when the whole file has to be searched."""
 
 _HEAD_OF_CHUNK: Final = 256
 """Bytes that hold the head of a chunk's content, whatever its compression is called."""
@@ -53,6 +56,15 @@ class Layout:
     channels: dict[int, ChannelRecord] = field(default_factory=dict[int, ChannelRecord])
     pieces: list[Piece] = field(default_factory=list[Piece])
     counts: Counter[int] = field(default_factory=Counter[int])
+    attachments: list[tuple[int, int]] = field(default_factory=list[tuple[int, int]])
+    """The offsets of attachments, and the lengths of their contents."""
+    data_end: int = 0
+    """The offset of the record that ends the data; 0 if it was not met."""
+
+    @property
+    def has_all_schemas(self) -> bool:
+        """Whether the definition of each channel is known."""
+        return {channel.schema for channel in self.channels.values()} - {0} <= self.schemas.keys()
 
     def note(self, opcode: int, content: bytes) -> None:
         """Note a schema or a channel; the first of a number counts."""
@@ -72,6 +84,8 @@ class OpenFile:
     file: BinaryIO
     size: int
     damages: Damages
+    _unpacked: int = 0
+    _records: int = 0
 
     def read(self, offset: int, size: int) -> bytes:
         """Bytes of the file. Raises BadRecord if they are not all there."""
@@ -102,7 +116,9 @@ class OpenFile:
         return records.chunk(self.read(offset, min(length, _HEAD_OF_CHUNK)), offset, length)
 
     def chunk(self, head: ChunkHead) -> bytes:
-        """The records in a chunk. Raises BadRecord if they are damaged."""
+        """The records in a chunk. Raises BadRecord if they are damaged, or too many for this file."""
+        if LARGEST >= head.size > self.damages.most_unpacked(self.size):
+            raise BadRecord(f"a chunk unpacks to {head.size:,} bytes, {UNPACKS}")
         try:
             found = decompress(head.compression, self.read(head.data, head.data_size), head.size)
         except Undecodable as error:
@@ -111,9 +127,34 @@ class OpenFile:
             raise BadRecord("the checksum of a chunk does not fit its content")
         return found
 
+    def records_of_chunk(self, position: int, length: int) -> Iterator[tuple[int, bytes, int]]:
+        """The records in the chunk at this offset, while looking for what is in the file.
+
+        Raises BadRecord if they are damaged, or if all chunks so far are too much for a file of this size.
+        """
+        head = self.chunk_head(position + HEAD.size, length)
+        self._unpacked += head.size if head.size <= LARGEST else 0  # the next step refuses it
+        most, most_records = self.damages.most_unpacked(self.size), _RECORDS + self.size // 4
+        if self._unpacked > most:
+            raise BadRecord(f"its chunks unpack to more than {most:,} bytes, {UNPACKS}")
+        for record in records_in(self.chunk(head)):
+            self._records += 1
+            if self._records > most_records and not self.damages.unlimited:
+                raise BadRecord(f"its chunks unpack to more than {most_records:,} records, {UNPACKS}")
+            yield record
+
 
 def layout_of(file: OpenFile) -> Layout:
     """The layout of a file: that of its summary, where this is sound, or what is found in it."""
+    found = _layout_of(file)
+    for channel in found.channels.values():
+        if channel.schema and channel.schema not in found.schemas:
+            text = f"the definition of the messages of {channel.topic} is not in the file"
+            file.damages.note(file.path, None, text)
+    return found
+
+
+def _layout_of(file: OpenFile) -> Layout:
     if file.read(0, min(len(MAGIC), file.size)) != MAGIC:
         raise BagError(f"{file.path}: this is no MCAP file: it does not begin as one")
     reason = ""
@@ -183,6 +224,14 @@ def _summary(file: OpenFile, summary: bytes, end: int) -> Layout | None:
         position = chunk.offset + chunk.length + chunk.indexes_length
     layout.pieces += _outside(file, position, end, layout)
     layout.counts = Counter(said.by_channel)
+    for piece in layout.pieces:  # where the summary does not repeat definitions
+        if layout.has_all_schemas:
+            break
+        if piece.is_chunk:
+            _, length = file.head(piece.offset)
+            for opcode, content, _ in file.records_of_chunk(piece.offset, length):
+                if opcode == Opcode.SCHEMA:
+                    layout.note(opcode, content)
     return layout
 
 
@@ -212,8 +261,8 @@ def _outside(file: OpenFile, position: int, end: int, layout: Layout, count: boo
             times.append(fields[4])
             if count:
                 layout.counts[fields[2]] += 1
-        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-            layout.note(opcode, file.read(position + HEAD.size, length))
+        else:
+            _note(file, opcode, position, length, layout)
         if opcode in (Opcode.DATA_END, Opcode.FOOTER):
             after = end
         if times and (opcode != Opcode.MESSAGE or after - first > _RUN or after >= end):
@@ -223,6 +272,34 @@ def _outside(file: OpenFile, position: int, end: int, layout: Layout, count: boo
         if not times:
             first = after
         position = after
+
+
+def _note(file: OpenFile, opcode: int, position: int, length: int, layout: Layout) -> None:
+    """Note a record outside chunks that is no message."""
+    if opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+        layout.note(opcode, file.read(position + HEAD.size, length))
+    elif opcode == Opcode.ATTACHMENT:
+        layout.attachments.append((position + HEAD.size, length))
+    elif opcode == Opcode.DATA_END:
+        layout.data_end = position
+
+
+def wrong_checksums(file: OpenFile, layout: Layout) -> Iterator[tuple[int, str]]:
+    """The checksums that do not fit what they are of, except those of chunks: where, and which."""
+    for offset, length in layout.attachments:
+        content = file.read(offset, length)
+        name, crc, covered = records.attachment(content)
+        if crc and crc32(content[:covered]) != crc:
+            yield offset - HEAD.size, f"the checksum of the attachment {name!r} does not fit its content"
+    if not layout.data_end:
+        return
+    crc, found, position = int.from_bytes(file.read(layout.data_end + HEAD.size, 4), "little"), 0, 0
+    while crc and position < layout.data_end:
+        size = min(_RUN, layout.data_end - position)
+        found = crc32(file.read(position, size), found)
+        position += size
+    if crc and found != crc:
+        yield layout.data_end, "the checksum of the data does not fit: a message may not be what was recorded"
 
 
 def _walk(file: OpenFile, layout: Layout) -> Iterator[int]:
@@ -239,9 +316,9 @@ def _walk(file: OpenFile, layout: Layout) -> Iterator[int]:
         elif opcode == Opcode.MESSAGE:
             after = _run_end(file, position)
             layout.pieces += _outside(file, position, after, layout, count=True)
-        elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
-            layout.note(opcode, file.read(position + HEAD.size, length))
-        elif opcode in (Opcode.DATA_END, Opcode.FOOTER):
+        else:
+            _note(file, opcode, position, length, layout)
+        if opcode in (Opcode.DATA_END, Opcode.FOOTER):
             return
         position = after
         yield position
@@ -264,11 +341,9 @@ def _run_end(file: OpenFile, position: int) -> int:
 
 
 def _walk_chunk(file: OpenFile, position: int, length: int, layout: Layout) -> None:
-    head = file.chunk_head(position + HEAD.size, length)
-    data = file.chunk(head)
     times: list[int] = []
     channels: Counter[int] = Counter()
-    for opcode, content, _ in records_in(data):
+    for opcode, content, _ in file.records_of_chunk(position, length):
         if opcode == Opcode.MESSAGE:
             if len(content) < records.MESSAGE.size - HEAD.size:
                 raise BadRecord("a message is shorter than it can be")

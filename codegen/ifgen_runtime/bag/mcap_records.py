@@ -47,7 +47,8 @@ class Fields:
 
     def __init__(self, content: bytes) -> None:
         self._content = content
-        self._position = 0
+        self.position = 0
+        """The bytes that were read so far."""
 
     def number(self, size: int) -> int:
         """An unsigned integer of `size` bytes."""
@@ -55,11 +56,11 @@ class Fields:
 
     def octets(self, size: int) -> bytes:
         """The next `size` bytes."""
-        end = self._position + size
+        end = self.position + size
         if end > len(self._content):
             raise BadRecord("a field reaches beyond the end of its record")
-        found = self._content[self._position : end]
-        self._position = end
+        found = self._content[self.position : end]
+        self.position = end
         return found
 
     def text(self) -> str:
@@ -87,7 +88,7 @@ class Fields:
     @property
     def is_done(self) -> bool:
         """Whether nothing is left."""
-        return self._position >= len(self._content)
+        return self.position >= len(self._content)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +181,16 @@ def chunk_index(content: bytes) -> ChunkIndex:
     start, end, offset, length = (fields.number(8) for _ in range(4))
     channels = fields.numbers(2, 8)
     return ChunkIndex(start, end, offset, length, frozenset(channels), fields.number(8))
+
+
+def attachment(content: bytes) -> tuple[str, int, int]:
+    """Read an attachment: its name, its checksum (0 if it has none), and how many bytes that is of."""
+    fields = Fields(content)
+    fields.octets(16)
+    name, _ = fields.text(), fields.text()
+    fields.octets(fields.number(8))
+    covered = fields.position
+    return name, fields.number(4), covered
 
 
 def statistics(content: bytes) -> Statistics:

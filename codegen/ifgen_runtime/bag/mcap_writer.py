@@ -93,14 +93,9 @@ class McapWriter:
         self._append(MAGIC, _record(Opcode.HEADER, _text("ros2"), _text(_LIBRARY)))
 
     @property
-    def count(self) -> int:
-        """Messages in the file, and in the chunk that is being filled."""
-        return sum(self._summary.counts.values()) + self._chunk.count
-
-    @property
-    def begin(self) -> int | None:
-        """When the first message was received [ns], of those in the file or of those that wait."""
-        return self._chunk.start if self.start is None and self._chunk.count else self.start
+    def counts(self) -> Mapping[int, int]:
+        """The messages of each channel in the file, without the chunk that is being filled."""
+        return self._summary.counts
 
     @property
     def size(self) -> int:
@@ -154,6 +149,11 @@ class McapWriter:
         if not chunk.begun:
             chunk.begun = now
         if offset + len(data) >= self._chunk_size or now - chunk.begun >= self._seconds:
+            self.flush()
+
+    def flush_old(self) -> None:
+        """Write the chunk that is being filled, if it was begun long enough ago."""
+        if self._chunk.begun and time.monotonic() - self._chunk.begun >= self._seconds:
             self.flush()
 
     def flush(self) -> None:
@@ -280,5 +280,8 @@ def _record(opcode: Opcode, *content: Any) -> bytes:
 
 
 def _text(text: str) -> bytes:
-    encoded = text.encode("utf-8", "replace")
+    try:
+        encoded = text.encode("utf-8", "surrogateescape")  # bytes that are no text, of another file
+    except UnicodeEncodeError:
+        encoded = text.encode("utf-8", "replace")
     return pack("<I", len(encoded)) + encoded

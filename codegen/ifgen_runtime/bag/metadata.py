@@ -1,51 +1,68 @@
-"""The `metadata.yaml` of a folder, as `ros2 bag` and rosbags read it."""
+"""The `metadata.yaml` of a folder, as rosbag2 of Jazzy writes it and `ros2 bag` and rosbags read it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
 from ifgen_runtime.bag.errors import BagError
 from ifgen_runtime.bag.qos import parsed, write_qos
-from ifgen_runtime.bag.topics import Topic
+from ifgen_runtime.bag.topics import Channel
 
+METADATA: Final = "metadata.yaml"
 _VERSION: Final = 9
 """That of ROS 2 Jazzy: profiles are lists, and topics have hashes."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class FileFacts:
-    """A file of the folder, complete."""
+    """A file, with its times [ns] and the messages of each channel in it."""
 
-    name: str
-    start: int | None
-    end: int
-    count: int
+    path: str
+    start: int | None = None
+    end: int = 0
+    counts: Counter[Channel] = field(default_factory=Counter[Channel])
 
 
-def write_metadata(path: Path, files: Sequence[FileFacts], topics: Sequence[Topic], distro: str = "") -> None:
-    """Write the metadata of these files, all of it or nothing. Raises BagError."""
-    import yaml  # takes long to load, and files do without
+def metadata_text(
+    files: Sequence[FileFacts],
+    channels: Sequence[Channel],
+    *,
+    storage: str,
+    ros_distro: str,
+    custom_data: Mapping[str, str] | None = None,
+    compression: tuple[str, str] = ("", ""),
+) -> str:
+    """The text about files; `compression` is that of whole files or messages: its format and its mode."""
+    import yaml  # takes long to load, and single files do without
 
     starts = [file.start for file in files if file.start is not None]
-    start, end = min(starts, default=0), max((file.end for file in files), default=0)
-    about = {
+    counts: Counter[Channel] = sum((file.counts for file in files), Counter[Channel]())
+    information = {
         "version": _VERSION,
-        "storage_identifier": "mcap",
-        "duration": {"nanoseconds": end - start},
-        "starting_time": {"nanoseconds_since_epoch": start},
-        "message_count": sum(file.count for file in files),
-        "topics_with_message_count": [_topic(topic) for topic in topics],
-        "compression_format": "",
-        "compression_mode": "",
-        "relative_file_paths": [file.name for file in files],
+        "storage_identifier": storage,
+        **_span(min(starts, default=0), max((file.end for file in files), default=0)),
+        "message_count": counts.total(),
+        "topics_with_message_count": [
+            {"topic_metadata": _topic(channel), "message_count": counts[channel]} for channel in channels
+        ],
+        "compression_format": compression[0],
+        "compression_mode": compression[1],
+        "relative_file_paths": [file.path for file in files],
         "files": [_file(file) for file in files],
-        "custom_data": None,
-        "ros_distro": distro,
+        "custom_data": dict(custom_data) if custom_data else None,
+        "ros_distro": ros_distro,
     }
-    text = yaml.safe_dump({"rosbag2_bagfile_information": about}, sort_keys=False, allow_unicode=True)
+    document = {"rosbag2_bagfile_information": information}
+    return yaml.safe_dump(document, sort_keys=False, allow_unicode=True, width=10**6)
+
+
+def write_metadata(folder: Path, text: str) -> None:
+    """Write the metadata of a folder, all of it or nothing. Raises BagError."""
+    path = folder / METADATA
     temporary = path.with_name(f"{path.name}.new")
     try:
         temporary.write_text(text, "utf-8")
@@ -55,22 +72,28 @@ def write_metadata(path: Path, files: Sequence[FileFacts], topics: Sequence[Topi
         raise BagError(f"{path}: cannot be written: {error.strerror}") from error
 
 
-def _file(file: FileFacts) -> dict[str, Any]:
-    start = file.start or 0
+def _span(start: int, end: int) -> dict[str, Any]:
     return {
-        "path": file.name,
+        "duration": {"nanoseconds": max(end - start, 0)},
         "starting_time": {"nanoseconds_since_epoch": start},
-        "duration": {"nanoseconds": file.end - start if file.count else 0},
-        "message_count": file.count,
     }
 
 
-def _topic(topic: Topic) -> dict[str, Any]:
-    about: dict[str, Any] = {
-        "name": topic.name,
-        "type": topic.type_name,
-        "serialization_format": topic.encoding,
-        "offered_qos_profiles": parsed(write_qos(topic.qos)) or [],
-        "type_description_hash": topic.type_hash,
+def _topic(channel: Channel) -> dict[str, Any]:
+    return {
+        "name": channel.topic,
+        "type": channel.definition.type_name,
+        "serialization_format": channel.encoding,
+        "offered_qos_profiles": parsed(write_qos(channel.qos)) or [],
+        "type_description_hash": channel.definition.type_hash,
     }
-    return {"topic_metadata": about, "message_count": topic.count}
+
+
+def _file(file: FileFacts) -> dict[str, Any]:
+    span = _span(file.start or 0, file.end)
+    return {
+        "path": file.path,
+        "starting_time": span["starting_time"],
+        "duration": span["duration"],
+        "message_count": file.counts.total(),
+    }

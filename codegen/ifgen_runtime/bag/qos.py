@@ -70,7 +70,7 @@ def parsed(text: str) -> Any:
 
     try:
         return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))
-    except (yaml.YAMLError, RecursionError) as error:
+    except Exception as error:  # tags such as `!!timestamp x` raise anything
         raise ValueError(str(error)) from None
 
 

@@ -24,6 +24,8 @@ class Bag:
     their message, as with `deserialize(..., views=True)`: images are read with one copy less. `classes` are
     the classes to use, by type name, in place of those that would be found.
 
+    A small file that unpacks to very much is read up to a limit, unless `unlimited` says that you trust it.
+
     Close a bag, or use it in a `with` statement; what is forgotten is closed, too.
     """
 
@@ -33,12 +35,14 @@ class Bag:
         *,
         strict: bool = False,
         views: bool = False,
+        unlimited: bool = False,
         classes: Mapping[str, type[Any]] | None = None,
     ) -> None:
         self.path = Path(path)
         """The file or folder."""
-        self._store = Store(self.path, Damages(strict), classes or {}, views)
-        self._finalize = weakref.finalize(self, self._store.close)
+        self._store = Store(self.path, Damages(strict, unlimited), classes or {}, views)
+        # Whoever iterates has the store, and perhaps no bag any more.
+        self._close = weakref.finalize(self._store, self._store.recording.close)
         self.topics: Mapping[str, Topic] = self._store.topics
         """The topics by name, in the order of their names."""
         sources = self._store.recording.sources
@@ -63,9 +67,14 @@ class Bag:
         return tuple(channel for source in self._store.recording.sources for channel in source.channels)
 
     @property
+    def attachments(self) -> int:
+        """The attachments of MCAP files. Nothing here reads them but their checksums."""
+        return sum(source.attachments for source in self._store.recording.sources)
+
+    @property
     def damage(self) -> tuple[Damage, ...]:
         """The damage that was met so far."""
-        return tuple(self._store.damages.found)
+        return self._store.damages.found
 
     def __len__(self) -> int:
         """All messages, by what the files say about themselves."""
@@ -119,7 +128,8 @@ class Bag:
 
     def close(self) -> None:
         """Close the files."""
-        self._finalize()
+        self._store.is_open = False
+        self._close()
 
     def __enter__(self) -> Self:
         return self

@@ -6,36 +6,32 @@ import shutil
 import time
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from threading import Lock
 from types import TracebackType
 from typing import Any, Final, Literal, Self, TypeAlias
 
-from ifgen_runtime.bag.definitions import full_text
+from ifgen_runtime.bag.definitions import definition_of
 from ifgen_runtime.bag.errors import BagError
-from ifgen_runtime.bag.folder import METADATA
-from ifgen_runtime.bag.mcap_writer import McapWriter
-from ifgen_runtime.bag.metadata import FileFacts, write_metadata
-from ifgen_runtime.bag.qos import OfferedQoS, all_offered, write_qos
-from ifgen_runtime.bag.topics import Definition, Recorded, Topic
+from ifgen_runtime.bag.metadata import METADATA
+from ifgen_runtime.bag.qos import OfferedQoS, all_offered
+from ifgen_runtime.bag.topics import Channel, Definition, Recorded, Topic
+from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
 from ifgen_runtime.codec import serialize
-from ifgen_runtime.type_description import type_hash, type_name
 
 Compression: TypeAlias = Literal["zstd", "lz4", "none"]
 
 _Key: TypeAlias = tuple[str, Definition]
 _CHUNK: Final = 2**20
-_SECONDS: Final = 1.0
 
 
 class Recorder:
-    """Records messages into a `.mcap` file, or into a folder as `ros2 bag record` makes it.
+    """Records messages into a `.mcap` or `.db3` file, or into a folder as `ros2 bag record` makes it.
 
-    The name decides: what ends in `.mcap` is a file, anything else a folder. Use it in a `with` statement. A
-    chunk is on disk when it has `chunk_size` bytes, or at the first message a second after it was begun, so a
-    crash loses no more than the last one.
+    The name decides: what ends in `.mcap` or `.db3` is a file, anything else a folder. Use it in a `with`
+    statement. A chunk is on disk when it has `chunk_size` bytes (4 MB in `.db3` files), or at the first
+    message a second after it was begun, so a crash loses no more than the last one.
 
     In a folder, a new file begins when one has `split_size` bytes, or when its messages were received over
     `split_duration` [s]. `overwrite` replaces what is at the path. `metadata` are the entries of a record of
@@ -59,36 +55,39 @@ class Recorder:
     ) -> None:
         self.path = Path(path)
         """The file or folder."""
-        self._is_folder = self.path.suffix != ".mcap"
+        storage = storage_of(self.path)
+        self._is_folder = storage is None
         if not self._is_folder and (split_size or split_duration):
-            raise BagError(f"{self.path}: only a folder can have several files: leave the ending .mcap out")
-        self._compression, self._chunk_size = compression, chunk_size
-        self._split_size = split_size or 2**64
-        self._split_duration = round((split_duration or 2**32) * 1e9)
-        self._metadata, self._distro = metadata, ros_distro
+            raise BagError(_one_file(self.path))
+        if storage == "sqlite3" and metadata:
+            raise BagError(f"{self.path}: only an MCAP file has room for metadata=")
         self._lock = Lock()
-        self._topics: dict[_Key, Topic] = {}
+        self._channels: dict[_Key, Channel] = {}
         self._counts: Counter[_Key] = Counter()
-        self._channels: dict[_Key, int] = {}
-        self._schemas: dict[Definition, int] = {}
         self._known: dict[tuple[str, type[Any]], _Key] = {}
         self._last: dict[str, _Key] = {}
-        self._files: list[FileFacts] = []
-        self._is_closed = False
         _make_room(self.path, overwrite)
-        if self._is_folder:
-            _make_folder(self.path)
-        self._writer = self._open()
+        self._writer = BagWriter(
+            self.path,
+            Format(storage or "mcap", "" if storage == "sqlite3" else compression, chunk_size=chunk_size),
+            self._is_folder,
+            Limits(duration=split_duration or 0.0, file_size=split_size or 0),
+            ros_distro=ros_distro,
+            records={"ifgen": metadata} if metadata else {},
+        )
 
     @property
     def topics(self) -> tuple[Topic, ...]:
         """The topics so far, with what was recorded of each."""
-        return tuple(replace(topic, count=self._counts[key]) for key, topic in self._topics.items())
+        return tuple(
+            Topic(channel.topic, (channel.definition,), channel.qos, self._counts[key])
+            for key, channel in self._channels.items()
+        )
 
     @property
     def files(self) -> tuple[Path, ...]:
         """The files so far."""
-        return (*(self.path / file.name for file in self._files), self._writer.path)
+        return self._writer.files
 
     def __len__(self) -> int:
         """The messages so far."""
@@ -155,20 +154,14 @@ class Recorder:
     def split(self) -> None:
         """Begin a new file, if this is a folder."""
         if not self._is_folder:
-            raise BagError(f"{self.path}: only a folder can have several files: leave the ending .mcap out")
+            raise BagError(_one_file(self.path))
         with self._lock:
-            self._split()
+            self._writer.split()
 
     def close(self) -> None:
         """Complete the recording. Raises BagError if there is no room for that; what is there can be read."""
         with self._lock:
-            if self._is_closed:
-                return
-            self._is_closed = True
-            try:
-                self._close_file()
-            finally:
-                self._write_metadata()
+            self._writer.close()
 
     def __enter__(self) -> Self:
         return self
@@ -202,8 +195,7 @@ class Recorder:
         if isinstance(of, Definition):
             return of
         try:
-            cls = _generated(of)
-            return Definition(type_name(cls), type_hash(cls), "ros2msg", full_text(cls))
+            return definition_of(of)
         except (AttributeError, TypeError, ValueError):
             name = getattr(of, "__name__", repr(of))
             raise BagError(f"{self.path}: {name} is no message class, and {topic} needs one") from None
@@ -212,70 +204,18 @@ class Recorder:
         key = (topic, definition)
         self._last[topic] = key
         if key not in self._channels:
-            self._topics[key] = Topic(topic, (definition,), qos, 0)
-            self._open_channel(key)
-
-    def _open_channel(self, key: _Key) -> None:
-        topic, definition = key
-        schema = self._schemas.get(definition)
-        if schema is None:
-            encoding = definition.encoding or "ros2msg"
-            schema = self._writer.add_schema(definition.type_name, encoding, definition.text)
-            self._schemas[definition] = schema
-        qos = write_qos(self._topics[key].qos)
-        about = {"offered_qos_profiles": qos, "topic_type_hash": definition.type_hash}
-        self._channels[key] = self._writer.add_channel(schema, topic, "cdr", about)
+            channel = self._channels[key] = Channel(topic, definition, qos)
+            self._writer.add(channel)
 
     def _write(self, key: _Key, data: bytes, received: int | None, published: int | None) -> None:
-        if self._is_closed:
-            raise BagError(f"{self.path}: the recording is complete: nothing more can be written")
         if received is None:
             received = time.time_ns()
-        if self._is_full(received):
-            self._split()
-        writer = self._writer
-        writer.write(self._channels[key], received, received if published is None else published, data)
+        self._writer.write(self._channels[key], received, received if published is None else published, data)
         self._counts[key] += 1
 
-    def _open(self) -> McapWriter:
-        path = self.path
-        if self._is_folder:
-            path = path / f"{path.resolve().name}_{len(self._files)}.mcap"
-        return McapWriter(path, self._compression, self._chunk_size, _SECONDS)
 
-    def _is_full(self, received: int) -> bool:
-        """Whether a message that is received then begins a new file."""
-        begin = self._writer.begin
-        too_long = begin is not None and received - begin >= self._split_duration
-        return too_long or self._writer.size >= self._split_size
-
-    def _split(self) -> None:
-        self._close_file()
-        self._writer = self._open()
-        self._schemas.clear()
-        for key in self._channels:
-            self._open_channel(key)
-
-    def _close_file(self) -> None:
-        writer = self._writer
-        try:
-            if self._metadata:
-                writer.add_metadata("ifgen", self._metadata)
-        finally:
-            try:
-                writer.close()
-            finally:
-                facts = FileFacts(writer.path.name, writer.start, writer.end, writer.count)
-                self._files.append(facts)
-
-    def _write_metadata(self) -> None:
-        if self._is_folder:
-            write_metadata(self.path / METADATA, self._files, self.topics, self._distro)
-
-
-def _generated(of: type[Any]) -> type[Any]:
-    """The class as it was generated, for one with checks."""
-    return next((cls for cls in of.__mro__ if "__type_hash__" in vars(cls)), of)
+def _one_file(path: Path) -> str:
+    return f"{path}: only a folder can have several files: leave the ending {path.suffix} out"
 
 
 def _make_room(path: Path, overwrite: bool) -> None:
@@ -292,10 +232,3 @@ def _make_room(path: Path, overwrite: bool) -> None:
             path.unlink()
     except OSError as error:
         raise BagError(f"{path}: cannot be overwritten: {error.strerror}") from error
-
-
-def _make_folder(path: Path) -> None:
-    try:
-        path.mkdir(parents=True)
-    except OSError as error:
-        raise BagError(f"{path}: the folder cannot be made: {error.strerror}") from error

@@ -6,14 +6,16 @@ import sqlite3
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import closing
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 from urllib.parse import quote
 
-from ifgen_runtime.bag.compression import LARGEST
+from ifgen_runtime.bag.compression import LARGEST, ZSTD
+from ifgen_runtime.bag.definitions import type_in
 from ifgen_runtime.bag.errors import BagError, Damages
 from ifgen_runtime.bag.qos import read_qos
-from ifgen_runtime.bag.sqlite_rescue import Row, missing_bytes, sound_rows
+from ifgen_runtime.bag.sqlite_rescue import Row, Span, TornPage, missing_bytes, sound_rows
 from ifgen_runtime.bag.topics import Batch, Channel, Definition, Entry, Wanted
 
 _BATCH: Final = 2**20
@@ -29,9 +31,11 @@ class SqliteFile:
     `hashes` are type hashes by topic, for a file that has none.
     """
 
+    attachments = 0
+
     def __init__(self, path: Path, damages: Damages, hashes: Mapping[str, str]) -> None:
         self._path, self._damages = path, damages
-        self._database, missing = _opened(path)
+        self._database, missing, self._torn = _opened(path)
         self._rows_left: list[Row] | None = None
         """The rows of a damaged database that can be read; None while nothing is wrong."""
         self.channels: dict[Channel, int] = {}
@@ -72,25 +76,56 @@ class SqliteFile:
                 f"{self._path}: this is no bag: it has no table {' and no table '.join(sorted(missing))}"
             )
         self._tables = plain
+        for table in ("topics", "messages", "message_definitions"):
+            if any(row[-1] > 1 for row in self._rows(f"PRAGMA table_xinfo({table})")):
+                raise BagError(f"{self._path}: this is no bag: columns of its table {table} are computed")
 
     def _columns(self, table: str) -> set[str]:
         return (
             {row[1] for row in self._rows(f"PRAGMA table_info({table})")} if table in self._tables else set()
         )
 
-    def _definitions(self) -> dict[str, tuple[str, str, str]]:
-        """Encoding, text and hash by the name of the type; files since ROS 2 Iron have them."""
+    def _torn_rows(self, table: str) -> list[Span]:
+        """The rows of a table that are not all there."""
+        if self._torn is None:
+            return []
+        query = "SELECT rootpage FROM sqlite_master WHERE type = 'table' AND name = ?"
+        return [span for (root,) in self._rows(query, table) for span in self._torn.rows(root)]
+
+    def _whole_rows(self, table: str, columns: str) -> Iterator[list[Any]]:
+        """These columns of the rows of a table that are all there."""
+        torn = self._torn_rows(table)
+        if not torn:
+            yield from self._rows(f"SELECT {columns} FROM {table} ORDER BY rowid")
+            return
+        self._damages.note(self._path, None, f"the table {table} is not all there")
+        for after, before in pairwise(
+            [-(2**63), *(edge for span in sorted(torn) for edge in span), 2**63 - 1]
+        ):
+            condition = "rowid > ? AND rowid <= ?"
+            if (after, before) not in torn:
+                yield from self._rows(
+                    f"SELECT {columns} FROM {table} WHERE {condition} ORDER BY rowid", after, before
+                )
+
+    def _definitions(self) -> dict[tuple[str, str], tuple[str, str, str]]:
+        """Encoding, text and hash by the name of the type and the hash; files since ROS 2 Iron have them.
+
+        The last one of a type has an empty hash as well, for topics without one.
+        """
         columns = self._columns("message_definitions")
         if not columns >= {"topic_type", "encoding", "encoded_message_definition"}:
             return {}
         type_hash = "type_description_hash" if "type_description_hash" in columns else "''"
-        query = (
-            f"SELECT topic_type, encoding, encoded_message_definition, {type_hash} FROM message_definitions"
-        )
-        return {_text(row[0]): (_text(row[1]), _text(row[2]), _text(row[3])) for row in self._rows(query)}
+        found: dict[tuple[str, str], tuple[str, str, str]] = {}
+        wanted = f"topic_type, encoding, encoded_message_definition, {type_hash}"
+        for name, *texts in self._whole_rows("message_definitions", wanted):
+            encoding, text, of = map(_text, texts)
+            found[_text(name), of] = found[_text(name), ""] = encoding, text, of
+        return found
 
     def _topics(
-        self, definitions: dict[str, tuple[str, str, str]], hashes: Mapping[str, str]
+        self, definitions: dict[tuple[str, str], tuple[str, str, str]], hashes: Mapping[str, str]
     ) -> Iterator[tuple[int, Channel]]:
         columns = self._columns("topics")
         if not columns >= {"id", "name", "type", "serialization_format"}:
@@ -98,14 +133,27 @@ class SqliteFile:
         optional = [
             name if name in columns else "''" for name in ("offered_qos_profiles", "type_description_hash")
         ]
-        query = f"SELECT id, name, type, serialization_format, {', '.join(optional)} FROM topics ORDER BY id"
-        for number, *texts in self._rows(query):
+        wanted = f"id, name, type, serialization_format, {', '.join(optional)}"
+        for number, *texts in self._whole_rows("topics", wanted):
             name, type_name, serialization, qos, type_hash = map(_text, texts)
-            encoding, text, hash_of_text = definitions.get(type_name, ("", "", ""))
+            known = definitions.get((type_name, type_hash)) or definitions.get((type_name, ""))
+            encoding, text, hash_of_text = known or ("", "", "")
             definition = Definition(
-                type_name, type_hash or hash_of_text or hashes.get(name, ""), encoding if text else "", text
+                type_in(type_name),
+                type_hash or hash_of_text or hashes.get(name, ""),
+                encoding if text else "",
+                text,
             )
             yield number, Channel(name, definition, read_qos(qos), serialization)
+
+    @property
+    def has_compressed_messages(self) -> bool:
+        """Whether its messages are compressed by themselves: CDR does not begin as the first one."""
+        try:
+            first = [row[0] for row in self._rows("SELECT data FROM messages LIMIT 1")]
+        except sqlite3.Error:
+            return False
+        return bool(first) and isinstance(first[0], bytes) and first[0].startswith(ZSTD)
 
     def _measure(self) -> None:
         """Find the first and the last time, and how many messages each topic has."""
@@ -127,7 +175,7 @@ class SqliteFile:
 
     def _rescue(self, damage: str) -> list[Row]:
         """Find the rows that can be read, and say so. Raises BagError if reading is strict."""
-        rows = self._rows_left = sound_rows(self._database)
+        rows = self._rows_left = sound_rows(self._database, self._torn_rows("messages"))
         counts = Counter(topic for _, _, topic in rows)
         self.channels = {channel: counts[number] for number, channel in self._by_number.items()}
         self.start, self.end = (rows[0][0], rows[-1][0]) if rows else (None, None)
@@ -201,10 +249,10 @@ def _query(wanted: Wanted, channels: dict[int, Channel], known: dict[int, Channe
     return [f"SELECT id, topic_id, timestamp, data FROM messages{where} ORDER BY timestamp, id", *values]
 
 
-def _opened(path: Path) -> tuple[sqlite3.Connection, int]:
+def _opened(path: Path) -> tuple[sqlite3.Connection, int, TornPage | None]:
     """Open a database without changing anything: neither it nor the files beside it.
 
-    Returns also how many bytes it lacks at its end.
+    Returns also how many bytes it lacks at its end, and its last page if only a part of that is there.
     """
     try:
         with path.open("rb") as file:
@@ -224,7 +272,8 @@ def _opened(path: Path) -> tuple[sqlite3.Connection, int]:
         missing = 0 if has_log else missing_bytes(path, header)
         if missing:  # otherwise SQLite reads nothing of it; nothing is written, whatever this is called
             database.execute("PRAGMA writable_schema = ON")
-        return database, missing
+        torn = TornPage(path, header) if missing and len(header) == _HEADER else None
+        return database, missing, torn
     except sqlite3.Error as error:
         raise BagError(f"{path}: this database cannot be opened: {error}") from None
 

@@ -34,11 +34,6 @@ class Store:
         self._classes = Classes(given, str(path))
         self._decoders: dict[Channel, Decode] = {}
 
-    def close(self) -> None:
-        """Close the files."""
-        self.is_open = False
-        self.recording.close()
-
     def batches(self, wanted: Wanted) -> Iterator[Batch]:
         """Batches of messages of all files: one file after the other, unless their times overlap."""
         for group in _groups(self.recording.sources, wanted):

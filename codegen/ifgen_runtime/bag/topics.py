@@ -132,6 +132,8 @@ class Source(Protocol):
     """When its first message was received [ns]; None if it has none."""
     end: int | None
     """When its last message was received [ns]."""
+    attachments: int
+    """Its attachments, which nothing here reads."""
 
     def batches(self, wanted: Wanted) -> Iterator[Batch]:
         """The messages in the order in which they were received, some at a time."""

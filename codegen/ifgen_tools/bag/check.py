@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ifgen_tools.bag.reading import reading
+from ifgen_tools.bag.saying import show
 
 if TYPE_CHECKING:
     from ifgen_runtime.bag import Bag
@@ -18,9 +19,9 @@ if TYPE_CHECKING:
 _SHOWN = 20
 
 
-def check(path: Path, *, as_json: bool) -> int:
+def check(path: Path, *, as_json: bool, unlimited: bool = False) -> int:
     """Print what is wrong and what differs; the exit code is 1 if something cannot be read."""
-    with reading(path) as bag:
+    with reading(path, unlimited=unlimited) as bag:
         unreadable, reasons = _unreadable(bag)
         different = {
             definition.type_name: list(islice(_differences(definition), _SHOWN))
@@ -30,15 +31,15 @@ def check(path: Path, *, as_json: bool) -> int:
     different = {name: lines for name, lines in different.items() if lines}
     if as_json:
         found = {"damage": damage, "unreadable": dict(unreadable), "different": different}
-        print(json.dumps(found, indent=2))
+        show(json.dumps(found, indent=2))
     else:
         for topic, count in unreadable.items():
-            print(f"{topic}: {count:,} message{'s' * (count != 1)} cannot be read: {reasons[topic]}")
+            show(f"{topic}: {count:,} message{'s' * (count != 1)} cannot be read: {reasons[topic]}")
         for name, lines in different.items():
-            print(f"{name} is defined otherwise here:")
-            print(*(f"  {line}" for line in lines), sep="\n")
+            show(f"{name} is defined otherwise here:")
+            show("\n".join(f"  {line}" for line in lines))
         if not (damage or unreadable):
-            print(f"{path} is whole: {len(bag):,} messages of {len(bag.topics)} topics")
+            show(f"{path} is whole: {len(bag):,} messages of {len(bag.topics)} topics")
     return 1 if damage or unreadable else 0
 
 

@@ -10,10 +10,11 @@ import click
 from ifgen_tools.bag.selection import selection
 
 if TYPE_CHECKING:
+    from ifgen_runtime.bag.writer import Format
+
     from ifgen_tools.bag.playing.play import PlayOptions
     from ifgen_tools.bag.recording.record import RecordCommand
     from ifgen_tools.bag.selection import Selection
-    from ifgen_tools.bag.storage.writer import Format
 
 # Late imports: a verb loads what is its own.
 
@@ -24,8 +25,9 @@ _SMALL: Final = 2**22
 
 def record_command(**chosen: Any) -> RecordCommand:
     """The choices of `bag record`. Raises click.UsageError."""
+    from ifgen_runtime.bag.writer import Limits
+
     from ifgen_tools.bag.recording.record import RecordCommand
-    from ifgen_tools.bag.storage.writer import Limits
 
     topics = (*chosen["names"], *chosen["topics"])
     every = chosen["everything"]
@@ -97,6 +99,7 @@ def play_options(**chosen: Any) -> PlayOptions:
         chosen["remap"],
         chosen["qos_overrides"],
         not chosen["disable_keyboard_controls"],
+        chosen["unlimited"],
         _request_events(chosen["publish_service_requests"], chosen["service_requests_source"]),
         chosen["wait_for_all_acked"] / 1000,
     )
@@ -127,9 +130,13 @@ def file_format(
     compression: str = "",
 ) -> Format:
     """The format of files, by the name of the output if nothing else says it. Raises click.UsageError."""
-    from ifgen_tools.bag.storage.writer import SUFFIXES, Format
+    from ifgen_runtime.bag.errors import BagError
+    from ifgen_runtime.bag.writer import Format, storage_of
 
-    by_name = {suffix: name for name, suffix in SUFFIXES.items()}.get(output.suffix if output else "")
+    try:
+        by_name = storage_of(output) if output else None
+    except BagError as error:
+        raise click.UsageError(f"{error}.") from None
     if storage and by_name and storage != by_name:
         raise click.UsageError(f"{output} is the name of a {by_name} file, and --storage is {storage}.")
     storage = storage or by_name or "mcap"

@@ -18,6 +18,9 @@ from ifgen_tools.options import Command
 # Late imports: each verb loads what it needs.
 
 _BAG: Final = click.argument("bag_path", metavar="BAG", type=click.Path(path_type=Path))
+_UNLIMITED: Final = click.option(
+    "--unlimited", is_flag=True, help="Read files that unpack to far more than their size, too."
+)
 _many = partial(click.option, cls=ManyOption)
 _S: Final = 10**9
 
@@ -175,6 +178,7 @@ def record(**chosen: Any) -> int:
 
 @bag.command(cls=ManyCommand, epilog="Example: `ifgen bag play drive --rate 2 --clock` at twice the speed.")
 @_BAG
+@_UNLIMITED
 @_chosen
 @click.option("-r", "--rate", type=float, default=1.0, callback=_positive, help="Play faster or slower.")
 @click.option("-l", "--loop", is_flag=True, help="Begin again at the end, for ever.")
@@ -257,8 +261,14 @@ def play(bag_path: Path, **chosen: Any) -> int:
 
 @bag.command(epilog="Example: `ifgen bag info drive` shows its topics, and how many messages they have.")
 @_BAG
+@_UNLIMITED
 @click.option("-t", "--topic-name", is_flag=True, help="Only the names of topics.")
-@click.option("-v", "--verbose", is_flag=True, help="The hashes of types as well.")
+@click.option(
+    "-v",
+    "--verbose",
+    is_flag=True,
+    help="The hashes of types as well, and the requests and responses of services.",
+)
 @options.json_option
 @_accepted("-s", "--storage")
 def info(bag_path: Path, **chosen: Any) -> int:
@@ -314,20 +324,23 @@ def _needs_output(chosen: dict[str, Any]) -> Path:
 
 @bag.command(epilog="Example: `ifgen bag convert drive -o drive.mcap` makes one file of a folder.")
 @_BAG
+@_UNLIMITED
 @_written
 @click.option(
     "-b", "--max-bag-size", type=int, default=0, metavar="BYTES", help="Begin a new file after these."
 )
-def convert(bag_path: Path, max_bag_size: int, **chosen: Any) -> int:
+def convert(bag_path: Path, max_bag_size: int, unlimited: bool, **chosen: Any) -> int:
     """Write a bag in another format: MCAP or SQLite, a folder or a file, compressed or not."""
-    from ifgen_tools.bag.copying import convert as run
-    from ifgen_tools.bag.storage.writer import Limits
+    from ifgen_runtime.bag.writer import Limits
 
-    return run(bag_path, _needs_output(chosen), _format(chosen), Limits(max_bag_size))
+    from ifgen_tools.bag.copying import convert as run
+
+    return run(bag_path, _needs_output(chosen), _format(chosen), Limits(max_bag_size), unlimited=unlimited)
 
 
 @bag.command(cls=ManyCommand, epilog="Example: `ifgen bag cut drive -o turn.mcap --start 2 --end 5`.")
 @_BAG
+@_UNLIMITED
 @_written
 @_chosen
 @click.option(
@@ -340,24 +353,27 @@ def cut(bag_path: Path, **chosen: Any) -> int:
     from ifgen_tools.bag.copying import cut as run
 
     output = _needs_output(chosen)
-    return run(bag_path, output, _format(chosen), playable(chosen), chosen["start"], chosen["end"])
+    part = playable(chosen), chosen["start"], chosen["end"]
+    return run(bag_path, output, _format(chosen), *part, unlimited=chosen["unlimited"])
 
 
 @bag.command(epilog="Example: `ifgen bag check drive` reads all of it, and compares its definitions.")
 @_BAG
+@_UNLIMITED
 @options.json_option
 @options.transport_option
-def check(bag_path: Path, transport: Any, as_json: bool) -> int:
+def check(bag_path: Path, transport: Any, as_json: bool, unlimited: bool) -> int:
     """Say whether a bag is whole, and which of its types are defined otherwise here."""
     from ifgen_tools.bag.check import check as run
     from ifgen_tools.session import activate
 
     activate(transport)
-    return run(bag_path, as_json=as_json)
+    return run(bag_path, as_json=as_json, unlimited=unlimited)
 
 
 @bag.command(epilog="Example: `ifgen bag migrate drive --check` says what would be lost.")
 @_BAG
+@_UNLIMITED
 @_written
 @click.option(
     "--to",
@@ -381,4 +397,5 @@ def migrate(bag_path: Path, reference: str, adapters: str, check: bool, lossy: b
     from ifgen_tools.session import activate
 
     activate(chosen["transport"])
-    return run(bag_path, chosen["output"], _format(chosen), reference, adapters, check=check, lossy=lossy)
+    flags = {"check": check, "lossy": lossy, "unlimited": chosen["unlimited"]}
+    return run(bag_path, chosen["output"], _format(chosen), reference, adapters, **flags)

@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
+
+from ifgen_tools.bag.output import whole
 from ifgen_tools.bag.reading import reading
+from ifgen_tools.bag.saying import show, warn
 from ifgen_tools.bag.selection import Selection, selection
-from ifgen_tools.bag.storage.output import whole
-from ifgen_tools.bag.storage.writer import SUFFIXES, BagWriter, Format, Limits
 from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
@@ -51,7 +53,7 @@ def written(
     limits: Limits | None = None,
 ) -> int:
     """Write a part of a bag to a new place, all of it or nothing; returns how many messages that are."""
-    is_folder = output.suffix not in SUFFIXES.values()
+    is_folder = storage_of(output) is None
     if not is_folder and format.outer:
         raise ToolError(
             f"{output} is a single file, and cannot be compressed as a whole", help="name a folder"
@@ -59,12 +61,13 @@ def written(
     chosen = [topic.name for topic in bag.topics.values() if part.choice.takes(topic.name, topic.type_name)]
     if not chosen:
         raise ToolError(f"nothing of {bag.path} is chosen", help="`ifgen bag info` shows its topics")
-    with whole(output) as place:
-        writer = BagWriter(place, format, is_folder, limits or Limits(), name=output.name)
-        try:
-            _copy(bag, writer, part, chosen, passage)
-        finally:
-            writer.close()
+    if bag.attachments:
+        warn(f"{bag.attachments:,} attachments of {bag.path} are not copied")
+    with (
+        whole(output) as place,
+        BagWriter(place, format, is_folder, limits or Limits(), name=output.name) as writer,
+    ):
+        _copy(bag, writer, part, chosen, passage)
     return writer.count
 
 
@@ -97,20 +100,29 @@ def _converted(data: bytes, convert: Callable[[bytes], bytes], topic: str) -> by
         ) from None
 
 
-def convert(path: Path, output: Path, format: Format, limits: Limits) -> int:
+def convert(path: Path, output: Path, format: Format, limits: Limits, *, unlimited: bool = False) -> int:
     """Write a bag in another format."""
-    with reading(path) as bag:
+    with reading(path, unlimited=unlimited) as bag:
         count = written(bag, output, format, Part(everything()), Passage, limits)
-    print(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
+    show(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
     return 0
 
 
-def cut(path: Path, output: Path, format: Format, choice: Selection, start: str, end: str) -> int:
+def cut(
+    path: Path,
+    output: Path,
+    format: Format,
+    choice: Selection,
+    start: str,
+    end: str,
+    *,
+    unlimited: bool = False,
+) -> int:
     """Write a part of a bag."""
-    with reading(path) as bag:
+    with reading(path, unlimited=unlimited) as bag:
         part = Part(choice, _time(bag, start, "--start"), _time(bag, end, "--end"))
         count = written(bag, output, format, part, Passage)
-    print(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
+    show(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
     return 0
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen_tools.bag.reading import reading
+from ifgen_tools.bag.saying import inline, show
 from ifgen_tools.bag.selection import SERVICE_EVENTS, is_service_event
 
 if TYPE_CHECKING:
@@ -17,36 +18,41 @@ if TYPE_CHECKING:
 _INDENT: Final = 19
 _UNITS: Final = ("B", "KiB", "MiB", "GiB", "TiB")
 _S: Final = 10**9
+_EVENT: Final = 40
+"""Bytes of a ServiceEventInfo: its type, time, client and sequence number."""
+
+_RESPONSE, _LAST_KIND = 2, 3
+"""The first and the last type of an event that is about a response; those below are about requests."""
 
 
-def info(path: Path, *, topic_name: bool, verbose: bool, as_json: bool) -> int:
+def info(path: Path, *, topic_name: bool, verbose: bool, as_json: bool, unlimited: bool = False) -> int:
     """Print what is in a bag, as `ros2 bag info` does."""
-    with reading(path) as bag:
+    with reading(path, unlimited=unlimited) as bag:
         topics = [topic for topic in bag.topics.values() if not is_service_event(topic.name)]
         services = [topic for topic in bag.topics.values() if is_service_event(topic.name)]
         if as_json:
-            print(json.dumps(_document(bag), indent=2))
+            show(json.dumps(_document(bag), indent=2))
         elif topic_name:
             for topic in topics:
-                print(topic.name)
+                show(inline(topic.name))
         else:
-            print(_text(bag, topics, services, verbose))
+            show(_text(bag, topics, services, verbose))
     return 0
 
 
 def _text(bag: Bag, topics: list[Topic], services: list[Topic], verbose: bool) -> str:
     lines = [
-        ("Files:", _indented(file.name for file in bag.files)),
+        ("Files:", _indented(inline(file.name) for file in bag.files)),
         ("Bag size:", file_size(sum(file.stat().st_size for file in bag.files))),
         ("Storage id:", storage(bag.files)),
-        ("ROS Distro:", bag.ros_distro or "unknown"),
+        ("ROS Distro:", inline(bag.ros_distro) or "unknown"),
         ("Duration:", f"{_seconds((bag.end or 0) - (bag.start or 0))}s"),
         ("Start:", _time(bag.start or 0)),
         ("End:", _time(bag.end or 0)),
         ("Messages:", str(sum(topic.count for topic in topics))),
         ("Topic information:", _indented(_topic(topic, verbose) for topic in topics)),
         ("Service:", str(len(services))),
-        ("Service information:", _indented(_service(topic) for topic in services)),
+        ("Service information:", _indented(_service(bag, topic, verbose) for topic in services)),
     ]
     return "\n" + "\n".join(
         (f"{name:<{_INDENT}}{value}" if len(name) < _INDENT else f"{name} {value}").rstrip()
@@ -60,21 +66,35 @@ def _indented(lines: Any) -> str:
 
 def _topic(topic: Topic, verbose: bool) -> str:
     text = (
-        f"Topic: {topic.name} | Type: {topic.type_name} | Count: {topic.count} | "
-        f"Serialization Format: {topic.encoding}"
+        f"Topic: {inline(topic.name)} | Type: {inline(topic.type_name)} | Count: {topic.count} | "
+        f"Serialization Format: {inline(topic.encoding)}"
     )
     if not verbose:
         return text
-    hashes = ", ".join(definition.type_hash or "unknown" for definition in topic.definitions)
+    hashes = ", ".join(inline(definition.type_hash) or "unknown" for definition in topic.definitions)
     return f"{text} | Type Hash: {hashes}"
 
 
-def _service(topic: Topic) -> str:
+def _service(bag: Bag, topic: Topic, verbose: bool) -> str:
     type_name = topic.type_name.removesuffix("_Event")
+    count = f"Event Count: {topic.count}"
+    if verbose:
+        requests, responses = _calls(bag, topic.name)
+        count = f"Request Count: {requests} | Response Count: {responses}"
     return (
-        f"Service: {topic.name.removesuffix(SERVICE_EVENTS)} | Type: {type_name} | "
-        f"Event Count: {topic.count} | Serialization Format: {topic.encoding}"
+        f"Service: {inline(topic.name.removesuffix(SERVICE_EVENTS))} | Type: {inline(type_name)} | "
+        f"{count} | Serialization Format: {inline(topic.encoding)}"
     )
+
+
+def _calls(bag: Bag, topic: str) -> tuple[int, int]:
+    """How many requests and responses the events are about. Client and server may both tell of one."""
+    found: tuple[set[bytes], set[bytes]] = set(), set()
+    for _, _, _, data in bag.entries(topic):
+        event = data[4 : 4 + _EVENT]  # after the head of CDR: the type, the time, then whose call it is
+        if len(event) == _EVENT and event[0] <= _LAST_KIND:
+            found[event[0] >= _RESPONSE].add(event[12:])
+    return len(found[0]), len(found[1])
 
 
 def storage(files: list[Path] | tuple[Path, ...]) -> str:

@@ -51,6 +51,8 @@ class Stop:
     """Whether somebody wants a command to end: the number of the signal, 0 while nobody does."""
 
     number: int = 0
+    is_impatient: bool = False
+    """Whether a second signal came: what is not urgent is left out."""
 
     def raise_again(self) -> None:
         """End as the signal would have ended the command."""
@@ -64,7 +66,7 @@ class Stop:
 def stoppable() -> Generator[Stop]:
     """Note Ctrl-C and SIGTERM instead of raising them: a write that is cut short leaves half a record.
 
-    A second one, of somebody who is impatient, is raised at once.
+    A second one is noted as well. A third one is raised at once.
     """
     stop = Stop()
     if threading.current_thread() is not threading.main_thread():
@@ -72,9 +74,12 @@ def stoppable() -> Generator[Stop]:
         return
 
     def note(number: int, _: FrameType | None) -> None:
-        if stop.number:
+        if stop.is_impatient:
             raise KeyboardInterrupt
-        stop.number = number
+        if stop.number:
+            stop.is_impatient = True
+        else:
+            stop.number = number
 
     before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
     try:

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 from ifgen.config.settings import settle
 from ifgen_runtime.adapters import adapter_for
 from ifgen_runtime.bag.topics import Channel
+from ifgen_runtime.bag.writer import Format
 from ifgen_runtime.codec import deserialize, serialize
 
 from ifgen_tools.bag import targets
 from ifgen_tools.bag.conversions import Loss, conversion
 from ifgen_tools.bag.copying import Part, Passage, everything, written
 from ifgen_tools.bag.reading import reading
-from ifgen_tools.bag.storage.writer import Format
+from ifgen_tools.bag.saying import show
 from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
@@ -48,10 +49,11 @@ def migrate(
     *,
     check: bool,
     lossy: bool,
+    unlimited: bool = False,
 ) -> int:
     """Write a bag with today's definitions, or say with `check` what that would do."""
     _import_adapters(adapters)
-    with reading(path) as bag:
+    with reading(path, unlimited=unlimited) as bag:
         plans = _plans(bag, reference)
         losses = {definition.type_name: plan.losses for definition, plan in plans.items() if plan.losses}
         if check or (losses and not lossy):
@@ -74,7 +76,7 @@ def migrate(
 
         count = written(bag, output, format, Part(everything()), passage)
     changed = sum(plan.convert is not None for plan in plans.values())
-    print(f"wrote {output}: {count:,} message{'s' * (count != 1)}, {changed} of {len(plans)} types converted")
+    show(f"wrote {output}: {count:,} message{'s' * (count != 1)}, {changed} of {len(plans)} types converted")
     return 0
 
 
@@ -133,6 +135,6 @@ def _by_fields(old: Known, new: Known) -> Plan:
 
 def _report(plans: dict[Definition, Plan]) -> None:
     for definition, plan in plans.items():
-        print(f"{definition.type_name}: {plan.how}")
+        show(f"{definition.type_name}: {plan.how}")
         for loss in plan.losses:
-            print(f"  {loss.place}: {'lost' if loss.is_lost else 'left at its default'}: {loss.reason}")
+            show(f"  {loss.place}: {'lost' if loss.is_lost else 'left at its default'}: {loss.reason}")

@@ -19,6 +19,7 @@ from rclpy.qos import (
 )
 
 from ifgen_tools.errors import ToolError
+from ifgen_tools.qos import fit
 
 _POLICIES: Final[dict[str, Any]] = {
     "history": HistoryPolicy,
@@ -51,21 +52,12 @@ def overrides(path: Path | None) -> dict[str, QoSProfile]:
 
 
 def adapted_request(offers: Sequence[QoSProfile], depth: int = _DEPTH) -> tuple[QoSProfile, list[str]]:
-    """What to ask of publishers so that all of them match, and which policies they do not agree on.
+    """The profile to ask of publishers so that all of them match, and the policies they do not agree on.
 
-    Reliable and transient local only if all offer that. Deadline, lifespan and liveliness are left open.
+    Deadline, lifespan and liveliness are left open.
     """
-    profile, mixed = QoSProfile(depth=depth), list[str]()
-    reliable = [offer.reliability != ReliabilityPolicy.BEST_EFFORT for offer in offers]
-    lasting = [offer.durability == DurabilityPolicy.TRANSIENT_LOCAL for offer in offers]
-    if not all(reliable):
-        profile.reliability = ReliabilityPolicy.BEST_EFFORT
-        mixed += ["reliability"] * any(reliable)
-    if offers and all(lasting):
-        profile.durability = DurabilityPolicy.TRANSIENT_LOCAL
-    elif any(lasting):
-        mixed.append("durability")
-    return profile, mixed
+    profile = QoSProfile(depth=depth)
+    return profile, [policy for policy, _, _ in fit(profile, offers)]
 
 
 def adapted_offer(recorded: Sequence[OfferedQoS]) -> tuple[QoSProfile, bool]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 import warnings
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ifgen_tools.bag.saying import warn
 from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def reading(path: Path, *, strict: bool = False) -> Generator[Bag]:
+def reading(path: Path, *, strict: bool = False, unlimited: bool = False) -> Generator[Bag]:
     """An open bag. Raises ToolError for what is wrong with it; damage that it can pass over is a warning."""
     from ifgen_runtime.bag import Bag, BagError, BagWarning  # most verbs of the command line read no bag
 
     def show(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
         if issubclass(category, BagWarning):
-            print(f"warning: {message}", file=sys.stderr)
+            warn(str(message))
         else:
             usual(message, category, *_, **__)
 
@@ -30,13 +30,17 @@ def reading(path: Path, *, strict: bool = False) -> Generator[Bag]:
         warnings.simplefilter("always", BagWarning)
         usual, warnings.showwarning = warnings.showwarning, show
         try:
-            with Bag(path, strict=strict) as bag:
+            with Bag(path, strict=strict, unlimited=unlimited) as bag:
                 yield bag
         except BagError as error:
-            raise ToolError(str(error), help=_help(path)) from None
+            raise ToolError(str(error), help=_help(path, str(error))) from None
 
 
-def _help(path: Path) -> str:
+def _help(path: Path, error: str) -> str:
+    from ifgen_runtime.bag.errors import UNPACKS  # the same
+
+    if UNPACKS in error:
+        return "if you trust it, read all of it with --unlimited"
     if not path.exists():
         return "name a .mcap or .db3 file, or a folder that `bag record` made"
     return ""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 from ifgen.cli import report
+from ifgen.diagnostics import printable
 from ifgen.evolution.explaining.explanation import Explanation, explained, head
 
 _WIDTH: Final = 80
@@ -47,7 +48,7 @@ def _help(explanation: Explanation) -> str:
     who, whose = ("an adapter", "") if explanation.converts is None else (explanation.converts, "its ")
     lines = (
         report.wrapped(f"{advice}. Until then, {who} can convert:", _WIDTH, len(lead)),
-        report.printable(explanation.command),
+        printable(explanation.command),
         f"and set {whose}on_type_mismatch to adapt",
     )
     return lead + f"\n{' ' * len(lead)}".join(lines)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,6 +12,7 @@ from ifgen_tools.bag.playing.pacing import PlayClock
 from ifgen_tools.bag.playing.player import Player, Range, part
 from ifgen_tools.bag.playing.requests import Requester, requester, wait_for_answers, wait_for_servers
 from ifgen_tools.bag.reading import reading
+from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection, is_service_event
 from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
@@ -49,6 +49,8 @@ class PlayOptions:
     remaps: tuple[str, ...] = ()
     qos_overrides: Path | None = None
     has_keys: bool = True
+    unlimited: bool = False
+    """Whether files may unpack to much more than their size."""
     request_events: int | None = None
     """The kind of service events whose requests are sent; None publishes the events."""
     all_acked: float = 0.0
@@ -59,7 +61,7 @@ class PlayOptions:
 def play(path: Path, transport: Literal["local", "rclpy", "auto"], options: PlayOptions) -> int:
     """Play a bag until its end."""
     arguments = ["--ros-args", *(part for rule in options.remaps for part in ("--remap", rule))]
-    with reading(path) as bag:
+    with reading(path, unlimited=options.unlimited) as bag:
         if bag.start is None or bag.end is None:
             raise ToolError(f"{path} has no messages", help="`ifgen bag info` shows what is in it")
         span = _span(bag.start, bag.end, options)
@@ -131,7 +133,7 @@ class _Playing:
         }
         with keyboard(actions, is_wanted=self._options.has_keys) as self._keyboard:
             if self._keyboard.legend:
-                print(self._keyboard.legend, file=sys.stderr)
+                say(self._keyboard.legend)
             player.play(is_looping=self._options.is_looping)
         wait_for_answers(self._session, self._requesters)
         self._wait_for_acknowledgements()
@@ -139,16 +141,16 @@ class _Playing:
     def _toggle(self) -> None:
         self._player.toggle()
         at = (self._player.clock.now() - (self._bag.start or 0)) / _S
-        _say(f"paused at {at:.3f} s" if self._player.clock.is_paused else "playing")
+        say(f"paused at {at:.3f} s" if self._player.clock.is_paused else "playing")
 
     def _step(self) -> None:
         if not self._player.clock.is_paused:
-            _say("SPACE pauses: after that, the right arrow publishes the next message")
+            say("SPACE pauses: after that, the right arrow publishes the next message")
         self._player.step(1)
 
     def _change_rate(self, factor: float) -> None:
         self._player.set_rate(self._player.clock.rate * factor)
-        _say(f"rate {self._player.clock.rate:.2f}")
+        say(f"rate {self._player.clock.rate:.2f}")
 
     def _is_chosen(self, topic: str, type_name: str) -> bool:
         if topic == "/clock" and (self._options.clock_rate or self._options.clock_topics is not None):
@@ -165,11 +167,11 @@ class _Playing:
             return  # from another file
         offer, disagree = adapted_offer(self._bag.topics[topic].qos)
         if disagree and topic not in self._overrides:
-            print(f"warning: publishers of {topic} had different QoS: the default is used", file=sys.stderr)
+            warn(f"publishers of {topic} had different QoS: the default is used")
         try:
             cls = self._bag.class_for(channel)
         except BagError as error:
-            print(f"warning: {topic} is not played: {error}", file=sys.stderr)
+            warn(f"{topic} is not played: {error}")
             return
         if self._options.request_events is not None and is_service_event(topic):
             caller = requester(self._session, topic, cls, self._options.request_events)
@@ -177,7 +179,11 @@ class _Playing:
                 self._requesters.append(caller)
                 self._publishers[topic, channel.definition] = caller.send
             return
-        publisher = self._session.node.create_publisher(cls, topic, self._overrides.get(topic, offer))
+        try:
+            publisher = self._session.node.create_publisher(cls, topic, self._overrides.get(topic, offer))
+        except (RuntimeError, ValueError) as error:  # another type has this name; RCLError has no public name
+            warn(f"{topic} is not played: {error}")
+            return
         self._all.append(publisher)
         self._publishers[topic, channel.definition] = publisher.publish
 
@@ -229,10 +235,6 @@ class _Playing:
             limit = Duration(nanoseconds=-1) if timeout < 0 else Duration(seconds=timeout)
             for publisher in self._all:
                 publisher.wait_for_all_acked(limit)
-
-
-def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
 
 
 def _span(start: int, end: int, options: PlayOptions) -> Range:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen_runtime.bag.classes import decoder
 from ifgen_runtime.codec import serialize
 
+from ifgen_tools.bag.saying import warn
 from ifgen_tools.bag.selection import SERVICE_EVENTS
 from ifgen_tools.calling import class_on_the_wire, known_class
 from ifgen_tools.errors import ToolError
@@ -79,7 +79,7 @@ class Requester:
     def _say(self, why: str) -> None:
         if why not in self._said:
             self._said.add(why)
-            print(f"warning: requests of {self.name} are not sent: {why}", file=sys.stderr, flush=True)
+            warn(f"requests of {self.name} are not sent: {why}")
 
 
 def wait_for_servers(session: Session, requesters: Sequence[Requester]) -> None:
@@ -98,7 +98,7 @@ def requester(session: Session, topic: str, event_class: type[Any], event_type: 
         return Requester(session, topic, event_class, event_type)
     except ToolError as error:
         service = topic.removesuffix(SERVICE_EVENTS)
-        print(f"warning: requests of {service} are not sent: {error.message}", file=sys.stderr)
+        warn(f"requests of {service} are not sent: {error.message}")
         return None
 
 

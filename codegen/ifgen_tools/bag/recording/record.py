@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import sys
+import signal
 import time
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
-from ifgen_tools.bag.keys import SPACE, keyboard, stoppable
+from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
+
+from ifgen_tools.bag.keys import SPACE, Stop, keyboard, stoppable
+from ifgen_tools.bag.output import require_new, telling
+from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection
-from ifgen_tools.bag.storage.output import require_new, telling
-from ifgen_tools.bag.storage.writer import SUFFIXES, BagWriter, Format, Limits
 from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
 
@@ -29,8 +31,11 @@ if TYPE_CHECKING:
 _LOOK: Final = 0.1
 """Seconds between two looks at the keys."""
 
-_LAST: Final = 5.0
-"""Seconds at most for what is on its way when somebody ends a recording."""
+_ON_ITS_WAY: Final = 0.1
+"""Seconds after a signal within which what was published before it arrives."""
+
+_PATIENCE: Final = {signal.SIGINT: 60.0, signal.SIGTERM: 5.0}
+"""Seconds at most for writing what waits after a signal. After SIGTERM, SIGKILL may follow in 10 s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +68,7 @@ def record(
 ) -> int:
     """Record until somebody interrupts it, or until `is_done`; the bag is complete then."""
     output = command.output or Path(datetime.now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
-    is_folder = output.suffix not in SUFFIXES.values()
+    is_folder = storage_of(output) is None
     limits = command.limits
     if not is_folder and (limits.size or limits.duration or command.format.outer):
         raise ToolError(
@@ -75,11 +80,6 @@ def record(
     with session as opened, telling(output):
         Recording(opened, command, output, is_folder).run(is_done)
     return 0
-
-
-def say(text: str) -> None:
-    """Tell the user, beside what others may read from the output."""
-    print(text, file=sys.stderr, flush=True)
 
 
 class Recording:
@@ -98,13 +98,15 @@ class Recording:
             command.ignore_leaves,
             command.use_sim_time,
         )
-        self.topics = TopicRecorder(session.node, options, self._open, say)
+        self.topics = TopicRecorder(session.node, options, self._open)
         self.topics.is_paused = command.is_paused
         self.writer = BagWriter(
             output, command.format, is_folder, command.limits, command.custom_data, on_split=_tell_split
         )
         self._kept: deque[tuple[Channel, int, int, bytes]] = deque()
         self._kept_size = 0
+        self._left: Counter[str] = Counter()
+        """Messages that came and are not in the bag, by topic."""
         offer_services(session.node, self)
 
     def run(self, is_done: Callable[[Recording], bool]) -> None:
@@ -117,29 +119,46 @@ class Recording:
             try:
                 legend = f" ({keys.legend})" if keys.legend else ""
                 say(f"Recording to {self._output}. Press Ctrl-C to stop{legend}")
+                say("Listening for topics...")  # launch files and tests wait for these words of rosbag2
                 self._session.discover()
                 self.topics.look()
+                if not self.topics.is_paused:
+                    say("Recording...")  # and for these
                 if command.has_discovery:
                     self._look_again(self._session.node, command.interval)
                 while self._session.context.ok() and not stop.number and not is_done(self):
                     self._session.turn(_LOOK)
+                    self.writer.flush_old()
                     keys.look()
                 if stop.number:
-                    self._take_what_came()
+                    self._take_what_came(stop)
+            except Exception:
+                self._left += self.topics.leave(time.time_ns())
+                raise
             finally:
                 self.topics.close()
-                self.writer.close()
-                self._summarise()
+                try:
+                    self.writer.close()
+                finally:
+                    self._summarise()
         stop.raise_again()
 
-    def _take_what_came(self) -> None:
-        """Record what has been published already, and is on its way."""
-        until = time.monotonic() + _LAST
-        while time.monotonic() < until:
-            before = self.topics.taken
-            self._session.executor.spin_once(timeout_sec=_LOOK)
-            if self.topics.taken == before:
-                break
+    def _take_what_came(self, stop: Stop) -> None:
+        """Record what has come, or was on its way; count what cannot be recorded in time."""
+        until = time.time_ns() + round(_ON_ITS_WAY * 1e9)
+        while (left := until - time.time_ns()) > 0:
+            self._session.executor.spin_once(timeout_sec=left / 1e9)
+        begin = time.monotonic()
+        asides = ["Writing what came before. Press Ctrl-C again to leave it out"]
+
+        def may_go_on() -> bool:
+            passed = time.monotonic() - begin
+            if passed > 1 and asides:
+                say(asides.pop())
+            return passed < _PATIENCE[signal.Signals(stop.number)] and not stop.is_impatient
+
+        self.topics.drain(until, may_go_on)
+        self._left += self.topics.leave(until)
 
     def _look_again(self, node: Any, interval: float) -> None:
         from rclpy.clock import Clock, ClockType
@@ -159,11 +178,11 @@ class Recording:
         return bool(kept)
 
     def _open(self, topic: str, cls: type[Any], offers: list[QoSProfile]) -> Write:
+        from ifgen_runtime.bag.definitions import definition_of
         from ifgen_runtime.bag.qos import offered
+        from ifgen_runtime.bag.topics import Channel
 
-        from ifgen_tools.bag.definitions import channel_of
-
-        channel = channel_of(topic, cls, tuple(dict.fromkeys(map(offered, offers))))
+        channel = Channel(topic, definition_of(cls), tuple(dict.fromkeys(map(offered, offers))))
         self.writer.add(channel)
         write: Callable[[Channel, int, int, bytes], None] = self.writer.write
         if self._command.snapshot_size:
@@ -185,8 +204,13 @@ class Recording:
         count = self.writer.count
         say(f"Recorded {count:,} message{'s' * (count != 1)} to {self._output}")
         for topic, lost in self.topics.lost.items():
-            what = "1 message" if lost == 1 else f"{lost:,} messages"
-            say(f"warning: on the way here, {what} of {topic} {'was' if lost == 1 else 'were'} lost")
+            warn(f"on the way here, {_messages(lost, topic)} lost")
+        for topic, left in sorted(self._left.items()):
+            warn(f"{_messages(left, topic)} received, and not recorded: the disk was too slow")
+
+
+def _messages(count: int, topic: str) -> str:
+    return f"1 message of {topic} was" if count == 1 else f"{count:,} messages of {topic} were"
 
 
 def _tell_split(closed: Path, opened: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from collections import Counter
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -11,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
 from ifgen_tools.bag.qos import adapted_request
+from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection
 from ifgen_tools.errors import ToolError
 from ifgen_tools.types import WireType, class_with_hash
@@ -23,8 +26,14 @@ if TYPE_CHECKING:
 _DEPTH: Final = 100_000
 """Messages of a topic that may wait while others are taken: a burst must not be lost."""
 
-_AT_ONCE: Final = 200
+_AT_ONCE: Final = 5000
 """Messages of a topic that are taken before others get their turn."""
+
+_BYTES_AT_ONCE: Final = 2**20
+"""Bytes of a topic after which others get their turn: small messages must not wait for 200 images."""
+
+_COUNTING: Final = 2.0
+"""Seconds at most for counting what is not recorded any more."""
 
 _AGAIN: Final = 50
 """Looks at the graph after which somebody who did not describe a type is asked again."""
@@ -47,16 +56,39 @@ class RecordOptions:
     use_sim_time: bool = False
 
 
+@dataclass(slots=True)
+class _Source:
+    """A subscription, and where its messages go."""
+
+    topic: str
+    subscription: Subscription[Any]
+    record: Callable[[bytes, Any], None]
+
+    def take(self, until: int | None = None) -> Any:
+        """The next message that waits, with its metadata; None if there is none that came until then [ns]."""
+        with self.subscription.handle:
+            taken = self.subscription.handle.take_message(self.subscription.msg_type, True)
+        if taken is None or (until is not None and _received(taken[1]) > until):
+            return None
+        return taken
+
+    def turn(self, taken: Any, until: int | None = None) -> None:
+        """Record a message and those that wait after it, until it is the turn of others."""
+        count = size = 0
+        while taken is not None:
+            self.record(*taken)
+            count, size = count + 1, size + len(taken[0])
+            taken = self.take(until) if count < _AT_ONCE and size < _BYTES_AT_ONCE else None
+
+
 class TopicRecorder:
     """Records what is chosen, each definition of a topic's type for itself."""
 
-    def __init__(self, node: Node, options: RecordOptions, open: Open, say: Callable[[str], None]) -> None:
-        """Subscribe with a node; `say` tells the user what happens."""
+    def __init__(self, node: Node, options: RecordOptions, open: Open) -> None:
+        """Subscribe with a node."""
         self.is_paused = False
-        self.taken = 0
-        """Messages that came, recorded or not."""
-        self._node, self._options, self._open, self._say = node, options, open, say
-        self._subscribed: dict[tuple[str, WireType], Subscription[Any]] = {}
+        self._node, self._options, self._open = node, options, open
+        self._subscribed: dict[tuple[str, WireType], _Source] = {}
         self._asked: dict[tuple[str, WireType], Future[type[Any]]] = {}
         self._refused: dict[tuple[str, WireType], int] = {}
         self._lost: dict[str, int] = {}
@@ -83,11 +115,33 @@ class TopicRecorder:
                 if key not in self._subscribed and self._may_ask(key):
                     self._take(key)
 
+    def drain(self, until: int, may_go_on: Callable[[], bool]) -> None:
+        """Record what waits and was received until a time [ns since 1970], each topic in its turn."""
+        waiting = list(self._subscribed.values())
+        while waiting:
+            for source in tuple(waiting):
+                if not may_go_on():
+                    return
+                taken = source.take(until)
+                if taken is None:
+                    waiting.remove(source)
+                else:
+                    source.turn(taken, until)
+
+    def leave(self, until: int) -> Counter[str]:
+        """Take what waits and was received until a time [ns since 1970], and only count it, by topic."""
+        left: Counter[str] = Counter()
+        end = time.monotonic() + _COUNTING
+        for source in self._subscribed.values():
+            while time.monotonic() < end and source.take(until) is not None:
+                left[source.topic] += 1
+        return left
+
     def close(self) -> None:
         """Stop to record."""
         self._asking.shutdown(wait=False, cancel_futures=True)
-        for subscription in self._subscribed.values():
-            self._node.destroy_subscription(subscription)
+        for source in self._subscribed.values():
+            self._node.destroy_subscription(source.subscription)
 
     def _wanted(self, topic: str) -> list[WireType]:
         """The types of a topic to record, as its publishers have them."""
@@ -115,6 +169,12 @@ class TopicRecorder:
 
     def _take(self, key: tuple[str, WireType]) -> None:
         topic, wire = key
+        if others := [of.name for name, of in self._subscribed if name == topic and of.name != wire.name]:
+            # A participant of DDS can have one type for each topic.
+            self._warn(
+                f"{topic} is recorded with messages of {others[0]}: those of {wire.name} are not recorded"
+            )
+            return
         cls = _installed(wire)
         if cls is None:
             asked = self._asked.get(key)
@@ -138,29 +198,29 @@ class TopicRecorder:
             for info in self._node.get_publishers_info_by_topic(topic)
             if info.topic_type == wire.name
         ]
-        profile = self._profile(topic, offers)
-        write = self._open(topic, cls, offers)
         clock, use_sim_time = self._node.get_clock(), self._options.use_sim_time
+        write: Write | None = None
 
         def record(data: bytes, info: Any) -> None:
-            if self.is_paused:
+            if self.is_paused or write is None:
                 return
-            received = clock.now().nanoseconds if use_sim_time else info["received_timestamp"]
+            received = clock.now().nanoseconds if use_sim_time else _received(info)
             if received:  # there is no simulated time before the first /clock
                 write(data, received, info["source_timestamp"] or received)
 
-        def record_all(data: bytes, info: Any) -> None:
+        def turn(data: bytes, info: Any) -> None:
             """Take what waits besides, without a turn of the executor for each: half the time."""
-            record(data, info)
-            taken = 1
-            while taken < _AT_ONCE and (more := _take(subscription)) is not None:
-                record(*more)
-                taken += 1
-            self.taken += taken
+            source.turn((data, info))
 
-        subscription = self._subscription(topic, cls, record_all, profile)
-        self._subscribed[key] = subscription
-        self._say(f"Subscribed to topic '{topic}'")
+        try:
+            subscription = self._subscription(topic, cls, turn, self._profile(topic, offers))
+        except (RuntimeError, ValueError) as error:  # RCLError has no public name
+            self._refused[key] = _AGAIN
+            self._warn(f"{topic} is not recorded: {error}")
+            return
+        source = self._subscribed[key] = _Source(topic, subscription, record)
+        write = self._open(topic, cls, offers)
+        say(f"Subscribed to topic '{topic}'")
 
     def _subscription(
         self, topic: str, cls: type[Any], record: Callable[[bytes, Any], None], profile: QoSProfile
@@ -190,7 +250,7 @@ class TopicRecorder:
     def _warn(self, text: str) -> None:
         if text not in self._warned:
             self._warned.add(text)
-            self._say(f"warning: {text}")
+            warn(text)
 
 
 _CONSEQUENCE: Final = {
@@ -199,10 +259,9 @@ _CONSEQUENCE: Final = {
 }
 
 
-def _take(subscription: Subscription[Any]) -> Any:
-    """The next message that waits, with its metadata; None if there is none."""
-    with subscription.handle:
-        return subscription.handle.take_message(subscription.msg_type, True)
+def _received(info: Any) -> int:
+    """When a message was received [ns since 1970]; now, if the middleware does not say."""
+    return info["received_timestamp"] or time.time_ns()
 
 
 def _installed(wire: WireType) -> type[Any] | None:
@@ -210,7 +269,7 @@ def _installed(wire: WireType) -> type[Any] | None:
     package, folder, name = (*wire.name.split("/", 2), "", "")[:3]
     try:
         cls = getattr(import_module(f"{package}.{folder}"), name, None)
-    except (ImportError, ValueError):
+    except Exception:  # of a package that somebody else wrote: the publisher can describe its type
         return None
     fits = cls is not None and wire.hash in {None, getattr(cls, "__type_hash__", wire.hash)}
     return cls if fits else None

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 from ifgen_tools.bag.rosbag2_interfaces import answering, service
 
 if TYPE_CHECKING:
+    from ifgen_runtime.bag.writer import BagWriter
     from rclpy.node import Node
 
     from ifgen_tools.bag.recording.recorder import TopicRecorder
-    from ifgen_tools.bag.storage.writer import BagWriter
 
 
 class Controlled(Protocol):

@@ -12,7 +12,7 @@ import pytest
 from ifgen.dynamic import class_from_text
 from ifgen_runtime import adapters
 from ifgen_runtime.bag import Bag, Recorder
-from ifgen_tools.bag.storage.writer import BagWriter
+from ifgen_runtime.bag.writer import BagWriter
 from mcap.writer import Writer as McapWriter
 
 from tests.cli.conftest import Run

@@ -272,3 +272,20 @@ def test_keys_say_what_they_did(ifgen: Run, drive: Path, monkeypatch: pytest.Mon
     assert lines[1].startswith("paused at 0.")
     assert lines[2:] == ["rate 1.10", "rate 1.00", "playing"]
     assert len(listener.values) == 20
+
+
+def test_a_topic_of_two_types(ifgen: Run) -> None:
+    """A participant has one type for each topic: the rest is played."""
+    with Recorder("two.mcap") as recorder:
+        recorder.write("/goal", String(data="kitchen"), BAG_START)
+        recorder.write("/mode", String(data="walk"), BAG_START)
+        recorder.add_topic("/mode", Point)
+        recorder.write_serialized("/mode", serialize(Point()), BAG_START + 1)
+    with listening() as listener:
+        listener.hear("/goal", String, "data")
+        listener.hear("/mode", String, "data")
+        outcome = ifgen("bag", "play", "--transport", "local", "two.mcap")
+    assert outcome.code == 0
+    assert "warning: /mode is not played: " in outcome.err
+    assert "incompatible type geometry_msgs/msg/Point" in outcome.err
+    assert sorted(listener.values) == ["kitchen", "walk"]

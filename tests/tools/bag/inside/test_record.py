@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import signal
 import threading
+import warnings
+from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +17,12 @@ import ifgen.dynamic
 import pytest
 import rclpy
 from geometry_msgs.msg import Point
-from ifgen_runtime.bag import Bag
+from ifgen_runtime.bag import Bag, writer
+from ifgen_runtime.bag.writer import BagWriter, Limits
 from ifgen_tools.bag.choices import file_format
 from ifgen_tools.bag.recording.record import RecordCommand, Recording, record
 from ifgen_tools.bag.recording.recorder import TopicRecorder
 from ifgen_tools.bag.selection import selection
-from ifgen_tools.bag.storage.writer import Limits
 from ifgen_tools.errors import ToolError
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -30,12 +35,12 @@ from tests.cli.conftest import Run
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
-@pytest.fixture
-def talker() -> Iterator[Node]:
+@contextmanager
+def spinning(name: str) -> Iterator[Node]:
     """A node that spins in a thread: it answers questions about its types."""
     context = rclpy.Context()
     rclpy.init(args=[], context=context)
-    node = rclpy.create_node("talker", context=context)
+    node = rclpy.create_node(name, context=context)
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
 
@@ -49,6 +54,12 @@ def talker() -> Iterator[Node]:
     context.shutdown()
     thread.join()
     node.destroy_node()
+
+
+@pytest.fixture
+def talker() -> Iterator[Node]:
+    with spinning("talker") as node:
+        yield node
 
 
 class Talk:
@@ -235,6 +246,152 @@ def test_a_type_that_nobody_describes(
     run(command("drive"), is_done)
     with Bag("drive", strict=True) as bag:
         assert len(bag["/position"]) == 3
+
+
+def test_another_type_on_a_recorded_topic(talker: Node, capsys: pytest.CaptureFixture[str]) -> None:
+    """Another process may publish it; its topic is recorded with the type that came first."""
+    said = ""
+    talk = Talk(talker.create_publisher(Point, "position", 10), points(3))
+    with spinning("stranger") as stranger:
+
+        def is_done(recording: Recording) -> bool:
+            nonlocal said
+            if talk(recording) and not stranger.publishers_info:
+                stranger.publishers_info = stranger.create_publisher(String, "position", 10)
+            said += capsys.readouterr().err
+            return "are not recorded" in said
+
+        stranger.publishers_info = None
+        run(command("drive", "/position"), is_done)
+    assert (
+        "warning: /position is recorded with messages of geometry_msgs/msg/Point: "
+        "those of std_msgs/msg/String are not recorded\n"
+    ) in said
+    with Bag("drive", strict=True) as bag:
+        assert {topic.name: topic.count for topic in bag.topics.values()} == {"/position": 3}
+
+
+def test_small_messages_do_not_wait_for_images(talker: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A topic takes turns of a megabyte."""
+    order: list[str] = []
+    whole = BagWriter.write
+
+    def note(self: BagWriter, channel: Any, *message: Any) -> None:
+        order.append(channel.topic)
+        whole(self, channel, *message)
+
+    monkeypatch.setattr(BagWriter, "write", note)
+    images, small = (talker.create_publisher(String, name, 100) for name in ("images", "small"))
+    waiting = [String(data="walk" * 100_000)] * 30
+
+    def is_done(_: Recording) -> bool:
+        if images.get_subscription_count() and small.get_subscription_count():
+            while waiting:
+                images.publish(waiting.pop())
+                small.publish(String(data="walk"))
+        return len(order) >= 60
+
+    run(command("drive"), is_done)
+    assert Counter(order) == {"/images": 30, "/small": 30}
+    assert order.index("/small") <= 3
+    assert order[3:36].count("/small") == 30, "all of them wait for one turn"
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("name", ["drive", "drive.db3"])
+def test_what_waits_at_the_end_is_recorded(
+    talker: Node,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    number: signal.Signals,
+    name: str,
+) -> None:
+    monkeypatch.setattr("ifgen_tools.bag.recording.record._ON_ITS_WAY", 0.0)
+    talk = Talk(talker.create_publisher(Point, "position", 1000), points(900))
+
+    def is_done(recording: Recording) -> bool:
+        if not (talk(recording) or not talk._messages):
+            return False
+        signal.raise_signal(number)
+        return True  # nothing is taken any more but at the end
+
+    with pytest.raises(KeyboardInterrupt):
+        run(command(name, "/position"), is_done)
+    assert capsys.readouterr().err.endswith(f"Recorded 900 messages to {name}\n")
+    with Bag(name, strict=True) as bag:
+        assert [point.x for point in bag["/position"]] == [0.1 * index for index in range(900)]
+
+
+def test_what_nobody_waits_for_is_counted(
+    talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A second Ctrl-C leaves out what waits."""
+    monkeypatch.setattr("ifgen_tools.bag.recording.record._ON_ITS_WAY", 0.0)
+    publishers = [talker.create_publisher(Point, name, 1000) for name in ("position", "goal")]
+
+    def is_done(_: Recording) -> bool:
+        if not all(publisher.get_subscription_count() for publisher in publishers):
+            return False
+        for publisher, number in zip(publishers, (900, 1), strict=True):
+            for point in points(number):
+                publisher.publish(point)
+        signal.raise_signal(signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
+        return True
+
+    recording = command("drive", "/position", "/goal")
+    with pytest.raises(KeyboardInterrupt):
+        run(recording, is_done)
+    said = capsys.readouterr().err
+    with Bag("drive", strict=True) as bag:
+        counts = {topic.name: topic.count for topic in bag.topics.values()}
+    left = {
+        topic: int(count.replace(",", ""))
+        for count, topic in re.findall(r"warning: ([\d,]+) messages? of (\S+) w\w+ received, and not", said)
+    }
+    assert counts == {"/position": 0, "/goal": 0}
+    assert left == {"/position": 900, "/goal": 1}
+
+
+def test_a_full_disk_is_said_and_what_was_written_stays(
+    talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: Any) -> int:
+        raise OSError(28, "No space left on device")
+
+    def is_done(recording: Recording) -> bool:
+        if talk(recording):
+            recording.writer.flush()
+            monkeypatch.setattr("ifgen_runtime.bag.mcap_writer._write", full)
+            recording.writer.split()
+        return False
+
+    talk = Talk(talker.create_publisher(Point, "position", 100), points(20))
+    with pytest.raises(ToolError, match="cannot be written any further: No space left on device") as raised:
+        run(command("drive", "/position"), is_done)
+    assert raised.value.help == "make room, or name a place on another disk with -o"
+    assert capsys.readouterr().err.endswith("Recorded 20 messages to drive\n")
+    text = Path("drive/metadata.yaml").read_text()
+    assert "message_count: 20\n" in text, "the metadata says what is there, although closing failed"
+
+
+@pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
+def test_a_message_is_in_the_file_soon(talker: Node, monkeypatch: pytest.MonkeyPatch, storage: str) -> None:
+    """Also if no other follows: a recorder that is killed keeps it."""
+    monkeypatch.setattr(writer, "_SECONDS", 0.01)
+    turns = count()
+    talk = Talk(talker.create_publisher(Point, "position", 10), points(1))
+
+    def is_done(recording: Recording) -> bool:
+        if not talk(recording):
+            return False
+        assert next(turns) < 50, "a look takes a tenth of a second"
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # it is not complete
+            with Bag(recording.writer.files[0]) as bag:
+                return [recorded.topic for recorded in bag] == ["/position"]
+
+    run(command("drive", format=file_format(storage=storage, output=None)), is_done)
 
 
 def test_what_exists_stays(ifgen: Run, tmp_path: Path) -> None:

@@ -1,1 +1,0 @@
-"""Bags as they are written: files of both formats, folders with their metadata, all or nothing."""
