@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from collections.abc import Callable
@@ -33,6 +34,15 @@ class ContextHandle(DestroyableType, Protocol):
 
 # Logging is set up by a program's first context that is initialised and ends with the last one.
 g_logging_configure_lock = threading.Lock()
+
+
+def _renew_lock() -> None:
+    global g_logging_configure_lock  # noqa: PLW0603 - a thread that is not in the fork may have held the other one
+    g_logging_configure_lock = threading.Lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_renew_lock)
 
 
 def __getattr__(name: str) -> Any:

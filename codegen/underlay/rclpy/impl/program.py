@@ -7,6 +7,7 @@ have the `Program` that it works for (`shared`); all of rclpy asks `current`.
 from __future__ import annotations
 
 import contextlib
+import os
 import signal
 import threading
 import weakref
@@ -58,6 +59,13 @@ class Program:
         for context in list(self.contexts):
             context.participant.leave()
 
+    def renew_locks(self) -> None:
+        """Start over in a fork: threads that do not exist there may have held any lock."""
+        self.lock = threading.RLock()
+        for kept in (self.logging, self.rosout):
+            if kept is not None:
+                kept.renew_locks()
+
     def rouse(self, thread_id: int) -> None:
         """Let a thread look up from what it waits for in rclpy: it raises what is due, or waits again."""
         timing.driver.rouse(thread_id)
@@ -72,6 +80,8 @@ def _whole_process() -> Program:
 
 # Call it through the module, `program.current()`: `shared` exchanges it.
 current: Callable[[], Program] = _whole_process
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=lambda: current().renew_locks())
 
 
 @contextlib.contextmanager

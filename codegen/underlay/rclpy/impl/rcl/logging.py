@@ -57,6 +57,9 @@ class _Levels:
         self._effective: dict[str, int] = {}  # cache; any change empties it
         self._lock = threading.Lock()
 
+    def renew_lock(self) -> None:
+        self._lock = threading.Lock()
+
     def get(self, name: str) -> int:
         return self._set.get(name, 0) if name else self.default
 
@@ -90,6 +93,12 @@ class _Logging:
         self.levels = _Levels()
         self.console: Console | None = None
         self.file: LogFile | None = None
+
+    def renew_locks(self) -> None:
+        """Free the locks in a fork."""
+        self.levels.renew_lock()
+        if self.file is not None:
+            self.file.renew_lock()
 
 
 def _here() -> _Logging:
