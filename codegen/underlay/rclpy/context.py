@@ -195,7 +195,14 @@ class Context(AbstractContextManager["Context"]):
 
 
 def _call(callbacks: list[WeakMethod[MethodType] | Callable[[], object]]) -> None:
+    """Call all of them, then raise what the first of them raised that failed."""
+    faults: list[Exception] = []
     for held in callbacks:
         callback = held() if isinstance(held, WeakMethod) else held
         if callback is not None:
-            callback()
+            try:
+                callback()
+            except Exception as error:
+                faults.append(error)
+    if faults:
+        raise faults[0]

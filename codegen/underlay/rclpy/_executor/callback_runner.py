@@ -90,7 +90,10 @@ class CallbackRunner:
 
     def run_in_pool(self, work: Work) -> None:
         """Run a task on a thread of a pool, and keep what it raises."""
-        run_in_pool(work[0])
+        task = work[0]
+        run_in_pool(task)
+        if task._exception is not None:
+            self._queue.poke()  # the thread that spins raises it
 
     async def _finish(self, unfinished: Coroutine[Any, Any, Any], entity: Any, group: CallbackGroup) -> None:
         """Await the rest of a callback; its group stays occupied until then."""

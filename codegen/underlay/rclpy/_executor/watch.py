@@ -252,15 +252,23 @@ class ServiceWatch(Watch):
         service = self.entity
         request, header = taken
         callback = service.callback
-        result = callback(request, service.srv_type.Response())
-        unfinished = _unfinished(result, callback)
-        if unfinished is not None:
-            return self._respond_later(unfinished, header)
-        service.send_response(result, header)
+        try:
+            result = callback(request, service.srv_type.Response())
+            unfinished = _unfinished(result, callback)
+            if unfinished is not None:
+                return self._respond_later(unfinished, header)
+            service.send_response(result, header)
+        except BaseException as error:
+            self.source.fail(header.request_id, f"its callback has failed ({type(error).__name__})")
+            raise
         return None
 
     async def _respond_later(self, unfinished: Coroutine[Any, Any, Any], header: Any) -> None:
-        self.entity.send_response(await unfinished, header)
+        try:
+            self.entity.send_response(await unfinished, header)
+        except BaseException as error:
+            self.source.fail(header.request_id, f"its callback has failed ({type(error).__name__})")
+            raise
 
 
 def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any, Any] | None:
