@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import sys
 import threading
@@ -9,7 +10,7 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from types import MethodType, TracebackType
 from typing import Any, Protocol
-from weakref import WeakMethod
+from weakref import WeakMethod, WeakSet
 
 from rclpy.destroyable import DestroyableType
 from rclpy.impl import program
@@ -98,6 +99,7 @@ class Context(AbstractContextManager["Context"]):
             )
             if initialize_logging and not self._logging_initialized:
                 self._logging_init()
+        _initialised.add(self)
 
     def ok(self) -> bool:
         """Return whether it is initialised and not shut down."""
@@ -111,26 +113,28 @@ class Context(AbstractContextManager["Context"]):
         """
         if self.__context is None:
             raise RuntimeError("Context must be initialized before it can be shutdown")
-        with self.__context, self._lock:
-            self.__context.shutdown()
-            callbacks = self._end()
-        _call(callbacks)
+        try:
+            with self.__context, self._lock:
+                self.__context.shutdown()
+                self._logging_fini()
+        finally:
+            self._call_back()
 
     def try_shutdown(self) -> None:
         """Shut it down if it is up."""
         if self.__context is None:
             return
         with self.__context, self._lock:
-            if not self.__context.ok():
-                return
-            self.__context.shutdown()
-            callbacks = self._end()
-        _call(callbacks)
+            if self.__context.ok():
+                self.__context.shutdown()
+                self._logging_fini()
+        self._call_back()
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
         """Call this at shutdown, or now if that has been.
 
-        Bound methods are held weakly, functions strongly.
+        After Ctrl-C or SIGTERM the thread that spins calls it, or else `shutdown`, `try_shutdown` or the end
+        of the program. Upstream does not call it then. Bound methods are held weakly, functions strongly.
         """
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
@@ -169,10 +173,13 @@ class Context(AbstractContextManager["Context"]):
             if weak_method in self._callbacks:
                 self._callbacks.remove(weak_method)
 
-    def _end(self) -> list[WeakMethod[MethodType] | Callable[[], object]]:
-        self._logging_fini()
-        callbacks, self._callbacks = self._callbacks, []
-        return callbacks
+    def _call_back(self) -> None:
+        """Call once what `on_shutdown` was given, if it was shut down, by a signal perhaps."""
+        if self.ok():
+            return
+        with self._lock:
+            callbacks, self._callbacks = self._callbacks, []
+        _call(callbacks)
 
     def _logging_init(self) -> None:
         here = program.current()
@@ -206,3 +213,13 @@ def _call(callbacks: list[WeakMethod[MethodType] | Callable[[], object]]) -> Non
                 faults.append(error)
     if faults:
         raise faults[0]
+
+
+def _call_back_at_exit() -> None:
+    for context in list(_initialised):
+        if context.handle is not None and not context.ok():  # a signal has ended it, and nobody has noticed
+            context._call_back()
+
+
+_initialised: WeakSet[Context] = WeakSet()
+atexit.register(_call_back_at_exit)

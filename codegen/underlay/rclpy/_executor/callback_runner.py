@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy._executor.ready_queue import ReadyQueue
 from rclpy._executor.tasks import TaskList, Work, run, run_in_pool
 from rclpy._executor.watch import Watch
-from rclpy.task import Task
+from rclpy.task import Task, explained
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
@@ -68,6 +68,9 @@ class CallbackRunner:
                 self._queue.drop_if_destroyed(watch)
             else:
                 unfinished = watch.call(taken, executor)
+        except RuntimeError as error:
+            fault = explained(error)
+            raise fault
         finally:
             if unfinished is None:
                 group.ending_execution(entity)
@@ -77,6 +80,9 @@ class CallbackRunner:
                 coroutine.send(None)
             except StopIteration:
                 return
+            except RuntimeError as error:
+                fault = explained(error)
+                raise fault
             task = Task(coroutine, executor=executor)
             task._entity = entity
             self._tasks.add(task, entity, watch.node)
