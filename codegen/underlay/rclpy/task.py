@@ -175,8 +175,8 @@ def explained(error: Exception) -> Exception:
     if type(error) is not RuntimeError or error.args != ("no running event loop",):
         return error
     explanation = RuntimeError(
-        "no running event loop: an executor of rclpy runs this callback, not asyncio. Await futures of rclpy, "
-        "which a timer may complete, or run asyncio on a thread of its own"
+        "no running event loop: an executor of rclpy runs this callback, not asyncio. Await futures of "
+        "rclpy, which a timer may complete, or run asyncio on a thread of its own"
     )
     explanation.__cause__ = error
     return explanation

@@ -69,8 +69,9 @@ class CallbackRunner:
             else:
                 unfinished = watch.call(taken, executor)
         except RuntimeError as error:
-            fault = explained(error)
-            raise fault
+            if (fault := explained(error)) is not error:
+                raise fault from error
+            raise
         finally:
             if unfinished is None:
                 group.ending_execution(entity)
@@ -81,8 +82,9 @@ class CallbackRunner:
             except StopIteration:
                 return
             except RuntimeError as error:
-                fault = explained(error)
-                raise fault
+                if (fault := explained(error)) is not error:
+                    raise fault from error
+                raise
             task = Task(coroutine, executor=executor)
             task._entity = entity
             self._tasks.add(task, entity, watch.node)
