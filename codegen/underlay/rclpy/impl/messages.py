@@ -1,9 +1,41 @@
-"""Mistakes in the class of a message."""
+"""Mistakes in the class of a message, and texts that a message cannot hold."""
 
 from __future__ import annotations
 
+import re
 from types import CoroutineType
-from typing import Any
+from typing import Any, Final, TypeVar
+
+_LONE_SURROGATE: Final = re.compile("[\ud800-\udfff]")
+_T = TypeVar("_T")
+
+
+def cleaned_text(text: str) -> str:
+    """A text that every message can hold.
+
+    It ends before a NUL, as upstream's does. Half of a surrogate pair becomes U+FFFD.
+    """
+    text = text.partition("\0")[0] if "\0" in text else text
+    return text if text.isascii() else _LONE_SURROGATE.sub("\ufffd", text)
+
+
+def cleaned(message: _T) -> _T:
+    """A copy of a message of rclpy's own, with texts of programs in it that it can hold.
+
+    Programs do not send it, so it must not fail because of them.
+    """
+    kind: Any = type(message)
+    fields = kind.get_fields_and_field_types()
+    copy: _T = kind(**{name: _cleaned_value(getattr(message, name)) for name in fields})
+    return copy
+
+
+def _cleaned_value(value: Any) -> Any:
+    if isinstance(value, str):
+        return cleaned_text(value)
+    if isinstance(value, list):
+        return [_cleaned_value(each) for each in value]
+    return cleaned(value) if hasattr(value, "get_fields_and_field_types") else value
 
 
 def wrong_class(value: object, expected: type[Any]) -> TypeError:

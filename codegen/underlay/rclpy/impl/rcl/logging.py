@@ -9,6 +9,7 @@ from pathlib import Path
 from rmw_local import report, timing
 
 from rclpy.impl import program
+from rclpy.impl.messages import cleaned_text
 
 from .console import Console, Line
 from .context import Context
@@ -203,6 +204,7 @@ def rclpy_logging_rcutils_log(
                 "rclpy_logging_rcutils_log(): incompatible function arguments: "
                 f"name, message, function and file must be str, got {text!r}"
             )
+    name, message, function_name, file_name = map(cleaned_text, (name, message, function_name, file_name))
     here = _here()
     if severity < here.levels.effective(name):
         return

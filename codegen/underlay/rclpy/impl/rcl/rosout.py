@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rmw_local.qos import RELIABLE, TRANSIENT_LOCAL, QosProfile
 
 from rclpy.impl import program
+from rclpy.impl.messages import cleaned_text
 
 if TYPE_CHECKING:
     from rmw_local.writer import Writer
@@ -83,7 +84,7 @@ def _disconnect(registry: _Registry, writer: Writer) -> None:
 
 def rclpy_logging_rosout_add_sublogger(logger_name: str, sublogger_name: str) -> bool:
     """Let a child of a node's logger publish too; False if the parent does not."""
-    registry, full_name = _here(), f"{logger_name}.{sublogger_name}"
+    registry, full_name = _here(), cleaned_text(f"{logger_name}.{sublogger_name}")
     with registry.lock:
         writer = registry.writers.get(logger_name)
         if writer is None:
@@ -97,7 +98,7 @@ def rclpy_logging_rosout_add_sublogger(logger_name: str, sublogger_name: str) ->
 
 def rclpy_logging_rosout_remove_sublogger(logger_name: str, sublogger_name: str) -> None:
     """Take back one `rclpy_logging_rosout_add_sublogger`."""
-    registry, full_name = _here(), f"{logger_name}.{sublogger_name}"
+    registry, full_name = _here(), cleaned_text(f"{logger_name}.{sublogger_name}")
     with registry.lock:
         users = registry.children.get(full_name, 0)
         if users > 1:
