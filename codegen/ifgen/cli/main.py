@@ -25,13 +25,15 @@ from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import transport as transport_option
 from ifgen.config.settings import settle
-from ifgen.writing.interruption import terminable
+from ifgen.writing.interruption import Terminated, held, terminable
 
 if TYPE_CHECKING:
     from ifgen.pipeline.inspection import Findings
     from ifgen.reading.search_path import SearchPath
 
 # Late imports: each command loads what it needs, so that the others start fast.
+
+_SIGINT: Final = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -52,6 +54,10 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
         with commands.make_context("ifgen", words) as context:
             code: int | None = commands.invoke(context)
             return code or 0
+    except KeyboardInterrupt as stop:
+        if isinstance(stop, Terminated) or not further.ends_as_tools_do(words):
+            raise
+        return _SIGINT  # before the command has heard it, or after
     except click.exceptions.Exit as ending:  # --help and --version
         return ending.exit_code
     except click.exceptions.NoArgsIsHelpError as error:
@@ -273,9 +279,10 @@ def run(
     PACKAGE is a generated one, sources in this folder or in src, or one that is installed. A FILE of that
     name comes first.
     """
-    from ifgen.running import run as running
+    with held(""):
+        from ifgen.running import run as running
 
-    settings = settle()
+        settings = settle()
     if generate_first:
         from ifgen.cli import generate
 
@@ -283,7 +290,8 @@ def run(
             # stdout is the programs'
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
-    programs = running.split(program, settings.output)
+    with held(""):
+        programs = running.split(program, settings.output)
     return running.run(
         programs, transport, settings.output, in_lockstep=in_lockstep, until_all_end=until_all_end
     )

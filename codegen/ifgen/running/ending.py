@@ -45,6 +45,9 @@ def tell(ending: BaseException) -> None:
         if ending.code is not None and not isinstance(ending.code, int):
             print(ending.code, file=sys.stderr)
         return
+    if isinstance(ending, KeyboardInterrupt) and _is_importing(ending.__traceback__):
+        print("interrupted", file=sys.stderr)
+        return
     each: BaseException | None = ending
     while each is not None:
         each.__traceback__ = without_ours(each.__traceback__)
@@ -55,6 +58,18 @@ def tell(ending: BaseException) -> None:
     else:
         # In one piece: another program may print as well.
         print("".join(traceback.format_exception(ending)), end="", file=sys.stderr, flush=True)
+
+
+def _is_importing(trace: TracebackType | None) -> bool:
+    """Whether a program still imported its modules, where nobody wants to read where."""
+    own = without_ours(trace)
+    frame = None if own is None else own.tb_next
+    while frame is not None:
+        code = frame.tb_frame.f_code
+        if code.co_name == "<module>" or code.co_filename in IMPORTING:
+            return True
+        frame = frame.tb_next
+    return False
 
 
 def without_ours(trace: TracebackType | None) -> TracebackType | None:

@@ -289,5 +289,5 @@ def test_a_coroutine_function_without_an_executor_is_refused() -> None:
 
     synchronizer.registerCallback(fuse)
     first.signalMessage(message(0))
-    with pytest.raises(RuntimeError, match="no executor can run the coroutine function .*fuse"):
+    with pytest.raises(RuntimeError, match=r"no executor can run the coroutine function .*fuse"):
         second.signalMessage(message(0))

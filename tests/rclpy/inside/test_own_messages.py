@@ -158,7 +158,7 @@ def test_what_no_message_can_hold_changes_nothing(gps: Gps, change: str) -> None
     node = gps.node
     node.declare_parameters("", [("a", 1), ("b", 1), ("any", "x", ParameterDescriptor(dynamic_typing=True))])
     before = _state(node)
-    with pytest.raises((SerializationError, OverflowError), match="expected an integer in|too big"):
+    with pytest.raises((SerializationError, OverflowError), match=r"expected an integer in|too big"):
         CHANGES[change](node)
     assert _state(node) == before
 
