@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 import weakref
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from rcl_interfaces.msg import (
@@ -46,7 +46,7 @@ from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
-from rclpy.impl.messages import cleaned
+from rclpy.impl.messages import cleaned, wrong_return
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.logging import get_logger
 from rclpy.logging_service import LoggingService
@@ -576,11 +576,13 @@ class Node:
 
     def _set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         if self._pre_set_parameters_callbacks:
-            parameter_list = [
-                parameter
-                for callback in self._pre_set_parameters_callbacks
-                for parameter in callback(parameter_list)
-            ]
+            changed: list[Parameter] = []
+            for callback in self._pre_set_parameters_callbacks:
+                answer: object = callback(parameter_list)
+                if not isinstance(answer, Iterable):
+                    raise TypeError(wrong_return("a pre-set callback of parameters", answer, list))
+                changed += answer
+            parameter_list = changed
             if not parameter_list:
                 return rules.refused(
                     "parameter list cannot be empty, this might be due to pre_set_parameters_callback "

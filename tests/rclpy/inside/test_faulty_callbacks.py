@@ -388,3 +388,13 @@ def test_a_callback_at_shutdown_that_raises_keeps_no_other_from_its_call() -> No
     with pytest.raises(Boom):
         rclpy.shutdown()
     assert calls == ["second"]
+
+
+@pytest.mark.parametrize("fault", ["returns_nothing", "is_async"])
+def test_pre_set(scene: Scene, fault: str) -> None:
+    node = scene.node
+    node.declare_parameter("gain", 0.1)
+    node.add_pre_set_parameters_callback(_faulty(fault, lambda parameters: parameters))
+    with pytest.raises(TypeError, match=r"a pre-set callback of parameters returned .*, expected list"):
+        node.set_parameters([Parameter("gain", value=0.2)])
+    assert node.get_parameter("gain").value == 0.1
