@@ -379,28 +379,16 @@ class MultiThreadedExecutor(Executor):
                 stacklevel=2,
             )
         self._futures: list[Task] = []
-        self._wait_condition = never
         self._executor = ThreadPoolExecutor(num_threads)
 
     def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
-        self._wait_condition = wait_condition
         try:
-            work = self.wait_for_ready_callbacks(timeout_sec, None, self._need_not_wait)
-        except ConditionReachedException:
-            self._raise_failure()
-            return
-        except (ExternalShutdownException, ShutdownException, TimeoutException):
+            work = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
+        except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
             return
         self._executor.submit(self._runner.run_in_pool, work)
         if work[0] not in self._futures:
             self._futures.append(work[0])
-        self._raise_failure()
-
-    def _need_not_wait(self) -> bool:
-        """Whether the condition is true, or a callback has raised: the thread that spins raises that."""
-        return self._wait_condition() or any(future._exception is not None for future in self._futures)
-
-    def _raise_failure(self) -> None:
         for future in self._futures[:]:
             if future.done():
                 self._futures.remove(future)

@@ -101,7 +101,9 @@ class CallbackRunner:
         task = work[0]
         run_in_pool(task)
         if task._exception is not None:
-            self._queue.poke()  # the thread that spins raises it
+            # The thread that spins raises it, as soon as it has something to do.
+            self._tasks.add(Task(_do_nothing), None, None)
+            self._queue.poke()
 
     async def _finish(self, unfinished: Coroutine[Any, Any, Any], entity: Any, group: CallbackGroup) -> None:
         """Await the rest of a callback; its group stays occupied until then."""
@@ -110,3 +112,7 @@ class CallbackRunner:
         finally:
             group.ending_execution(entity)
             self._queue.poke()
+
+
+def _do_nothing() -> None:
+    pass
