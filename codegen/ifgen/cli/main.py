@@ -48,8 +48,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _dispatch(arguments: Sequence[str] | None) -> int:
     if os.environ.get(completion.VARIABLE):  # a shell asks what could come next
         return completion.complete(commands)
+    words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        words = list(sys.argv[1:] if arguments is None else arguments)
         # Not `commands.main`, which has its own way with Ctrl-C.
         with commands.make_context("ifgen", words) as context:
             code: int | None = commands.invoke(context)
