@@ -19,10 +19,10 @@ def main() -> int:
 
 def _code_of_interruption() -> int:
     """The exit code of Ctrl-C, before the command was known."""
-    import signal  # late, and the next one too: most runs are not interrupted
+    import signal  # late: most runs are not interrupted
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # it ends now
-    from ifgen.cli import further
+    from ifgen.cli import further  # late: what Ctrl-C cuts short may fail in any way
 
     return 2 if further.ends_as_tools_do(sys.argv[1:]) else 130
 

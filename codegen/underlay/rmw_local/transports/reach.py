@@ -51,7 +51,7 @@ _LATE: Final = (
     "rmw_local.transports.zenoh.config",
     "rmw_local.transports.zenoh.engine",
 )
-"""What threads of ours, and Zenoh's, import when it is needed."""
+"""The modules that threads of ours, and Zenoh's, import when they need them."""
 
 _PATIENCE: Final = 1.0  # [s] until endpoints count as unmatched where Zenoh is missing
 _CHECK_EVERY: Final = 1.0  # [s], for a router
