@@ -6,6 +6,7 @@ import _thread
 import sys
 from collections.abc import Callable
 from functools import partial
+from io import TextIOWrapper
 from typing import Any
 
 from ifgen.running import processes
@@ -22,6 +23,7 @@ def run(program: Program) -> int:
     try:
         if note is not None:
             processes.let_signals_come()
+            _write_whole_lines()
         program.execute()
     except BaseException as error:
         ending = error
@@ -45,6 +47,13 @@ def _hear_again(report: Callable[[Any], object], error: Any) -> None:
         _thread.interrupt_main()
     else:
         report(error)
+
+
+def _write_whole_lines() -> None:
+    """Write each line at once, also to a file or a pipe: other programs write there, too."""
+    stdout: object = sys.stdout
+    if isinstance(stdout, TextIOWrapper):  # None, where there is no output
+        stdout.reconfigure(line_buffering=True)
 
 
 def _be_quiet_when(is_dismissed: Callable[[], bool]) -> None:
