@@ -127,7 +127,7 @@ class Context(AbstractContextManager["Context"]):
         with self.__context, self._lock:
             if self.__context.ok():
                 self.__context.shutdown()
-                self._logging_fini()
+            self._logging_fini()  # also after a signal
         self._call_back()
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:

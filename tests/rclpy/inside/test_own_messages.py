@@ -12,7 +12,7 @@ import rclpy
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from ifgen_runtime import SerializationError, serialize
-from rcl_interfaces.msg import Log, ParameterDescriptor, ParameterEvent, SetParametersResult
+from rcl_interfaces.msg import IntegerRange, Log, ParameterDescriptor, ParameterEvent, SetParametersResult
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.impl.messages import cleaned_text
@@ -149,7 +149,7 @@ CHANGES: dict[str, Any] = {
 def _descriptor_that_does_not_fit() -> ParameterDescriptor:
     descriptor = ParameterDescriptor()
     descriptor.type = 1
-    descriptor.integer_range = [rclpy.node.rules.IntegerRange(to_value=TOO_LARGE)]
+    descriptor.integer_range = [IntegerRange(to_value=TOO_LARGE)]
     return descriptor
 
 
@@ -188,7 +188,7 @@ def test_a_stream_in_ascii_takes_every_log(gps: Gps, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(sys, "stderr", stream)
     gps.node.get_logger().info("café")
     stream.flush()
-    assert stream.buffer.getvalue().endswith(b"caf\\xe9\n")  # type: ignore[attr-defined]  # a BytesIO
+    assert stream.buffer.getvalue().endswith(b"caf\\xe9\n")
 
 
 def test_a_node_of_the_same_name_after_a_shutdown_logs_as_the_first_did(
