@@ -37,15 +37,6 @@ class ContextHandle(DestroyableType, Protocol):
 g_logging_configure_lock = threading.Lock()
 
 
-def _renew_lock() -> None:
-    global g_logging_configure_lock  # noqa: PLW0603 - a thread that is not in the fork may have held the other one
-    g_logging_configure_lock = threading.Lock()
-
-
-if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_renew_lock)
-
-
 def __getattr__(name: str) -> Any:
     if name == "g_logging_ref_count":  # what upstream counts here
         return program.current().logging_users
@@ -221,5 +212,13 @@ def _call_back_at_exit() -> None:
             context._call_back()
 
 
+def _start_over_in_fork() -> None:
+    global g_logging_configure_lock  # noqa: PLW0603 - a thread that is not in the fork may have held the other one
+    g_logging_configure_lock = threading.Lock()
+    _initialised.clear()  # the end of the fork is not that of the program that was forked
+
+
 _initialised: WeakSet[Context] = WeakSet()
 atexit.register(_call_back_at_exit)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_start_over_in_fork)

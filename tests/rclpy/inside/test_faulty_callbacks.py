@@ -298,6 +298,18 @@ def test_await_of_a_cancelled_future_is_said(scene: Scene, begin: Any) -> None:
     assert "ask `future.cancelled()`" in str(said[0].message)
 
 
+@pytest.mark.parametrize("begin", [_timer, _subscription, _guard])
+def test_a_generator_function_is_said_to_run_nothing(scene: Scene, begin: Any) -> None:
+    def waits(*_: Any) -> Iterator[None]:
+        yield
+
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        begin(scene, waits)
+        scene.until(lambda: said)
+    assert "nothing runs the generator function" in str(said[0].message)
+
+
 STEPS = {
     "on_configure": (10, ["configure"], "unconfigured", "inactive"),
     "on_activate": (13, ["configure", "activate"], "unconfigured", "active"),

@@ -7,8 +7,9 @@ that something may have happened, so that an idle entity costs an executor nothi
 from __future__ import annotations
 
 import inspect
+import warnings
 from collections.abc import Callable, Coroutine
-from types import CoroutineType
+from types import CoroutineType, GeneratorType
 from typing import TYPE_CHECKING, Any, Protocol
 
 from ifgen_runtime.errors import ServerGoneError
@@ -278,4 +279,7 @@ def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any
     """
     if type(result) is CoroutineType and inspect.iscoroutinefunction(callback):
         return result
+    if type(result) is GeneratorType:
+        name = getattr(callback, "__qualname__", repr(callback))
+        warnings.warn(f"nothing runs the generator function {name}: make it an `async def`", stacklevel=2)
     return None
