@@ -13,8 +13,18 @@ def main() -> int:
         with held(""):
             from ifgen.cli.main import main as run  # late: one that Ctrl-C cuts short may fail in any way
     except KeyboardInterrupt:
-        return 130
+        return _code_of_interruption()
     return run()
+
+
+def _code_of_interruption() -> int:
+    """The exit code of Ctrl-C, before the command was known."""
+    import signal  # late: most runs are not interrupted
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it ends now
+    from ifgen.cli import further  # late: what Ctrl-C cuts short may fail in any way
+
+    return 2 if further.ends_as_tools_do(sys.argv[1:]) else 130
 
 
 if __name__ == "__main__":

@@ -39,6 +39,14 @@ def test_a_fork_before_anybody_has_come_meets_its_parent(machine: Machine) -> No
     assert parent.rest() == ["child 1 sees child1 parent", "code 0", "nodes parent"]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("attempt", range(4))
+def test_forks_while_the_parent_opens_its_session_come_to_their_end(machine: Machine, attempt: int) -> None:
+    parent = machine.run("volley", program=FORKING)
+    assert parent.process.wait(LIMIT) == 0, parent.rest()
+    assert parent.rest()[-1] == "codes 0 0 0 0 0 0"
+
+
 @pytest.mark.parametrize("how", ["os", pytest.param("fork", marks=pytest.mark.slow)])
 def test_a_later_fork_is_told_that_it_is_alone_and_disturbs_nobody(machine: Machine, how: str) -> None:
     listener = machine.run("l", "listen")

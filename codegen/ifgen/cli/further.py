@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from importlib.metadata import EntryPoint
 
 _GROUP: Final = "ifgen.commands"
@@ -16,6 +17,12 @@ _GROUP: Final = "ifgen.commands"
 def names() -> list[str]:
     """The names of these commands."""
     return list(_entry_points())
+
+
+def ends_as_tools_do(words: Sequence[str]) -> bool:
+    """Whether a command line is one of ifgen_tools, whose exit code after Ctrl-C is 2, as that of `ros2`."""
+    entry_point = _entry_points().get(words[0]) if words else None
+    return entry_point is not None and entry_point.value.startswith("ifgen_tools.")
 
 
 def command(name: str) -> click.Command | None:

@@ -27,13 +27,15 @@ from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import transport as transport_option
 from ifgen.config.settings import settle
 from ifgen.diagnostics import printable
-from ifgen.writing.interruption import terminable
+from ifgen.writing.interruption import Terminated, held, terminable
 
 if TYPE_CHECKING:
     from ifgen.pipeline.inspection import Findings
     from ifgen.reading.search_path import SearchPath
 
 # Late imports: each command loads what it needs, so that the others start fast.
+
+_SIGINT: Final = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -48,12 +50,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _dispatch(arguments: Sequence[str] | None) -> int:
     if os.environ.get(completion.VARIABLE):  # a shell asks what could come next
         return completion.complete(commands)
+    words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        words = list(sys.argv[1:] if arguments is None else arguments)
         # Not `commands.main`, which has its own way with Ctrl-C.
         with commands.make_context("ifgen", words) as context:
             code: int | None = commands.invoke(context)
             return code or 0
+    except KeyboardInterrupt as stop:
+        if isinstance(stop, Terminated) or not further.ends_as_tools_do(words):
+            raise
+        return _SIGINT  # before the command has heard it, or after
     except click.exceptions.Exit as ending:  # --help and --version
         return ending.exit_code
     except click.exceptions.NoArgsIsHelpError as error:
@@ -285,13 +291,14 @@ def run(
     PACKAGE is a generated one, sources in this folder or in src, or one that is installed. A FILE of that
     name comes first.
     """
-    from ifgen.running import run as running
+    with held(""):
+        from ifgen.running import run as running
 
-    is_part = of_launch or running.is_one_of_several()
-    words, late = _late_options(() if is_part else program)
+        is_part = of_launch or running.is_one_of_several()
+        words, late = _late_options(() if is_part else program)
+        settings = settle()
     transport = cast("Literal['local', 'rclpy', 'auto']", late.get("--transport", transport))
     in_lockstep, generate_first = in_lockstep or "--lockstep" in late, generate_first or "--generate" in late
-    settings = settle()
     if generate_first:
         from ifgen.cli import generate
 
@@ -299,7 +306,8 @@ def run(
             # stdout is the programs'
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
-    programs = running.split(program if is_part else words, settings.output)
+    with held(""):
+        programs = running.split(program if is_part else words, settings.output)
     return running.run(programs, transport, settings.output, in_lockstep=in_lockstep, tells=not is_part)
 
 

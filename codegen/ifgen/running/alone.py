@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import _thread
 import sys
 from collections.abc import Callable
+from functools import partial
 from io import TextIOWrapper
 from typing import Any
 
@@ -16,6 +18,8 @@ def run(program: Program) -> int:
     """Run a program to its end; returns its exit code. What it leaves running ends with this process."""
     note = processes.take_note()
     ending: BaseException | None = None
+    report = sys.unraisablehook
+    sys.unraisablehook = partial(_hear_again, report)
     try:
         if note is not None:
             processes.let_signals_come()
@@ -23,6 +27,9 @@ def run(program: Program) -> int:
         program.execute()
     except BaseException as error:
         ending = error
+    finally:
+        if getattr(sys.unraisablehook, "func", None) is _hear_again:  # else the program has its own
+            sys.unraisablehook = report
 
     def is_dismissed() -> bool:
         return note is not None and note.exists()
@@ -32,6 +39,14 @@ def run(program: Program) -> int:
         tell(ending)
         return exit_code(ending)
     return 0
+
+
+def _hear_again(report: Callable[[Any], object], error: Any) -> None:
+    """Let Ctrl-C interrupt the program where Python would drop it, as in the callback of a weak reference."""
+    if isinstance(error.exc_value, KeyboardInterrupt):
+        _thread.interrupt_main()
+    else:
+        report(error)
 
 
 def _write_whole_lines() -> None:

@@ -52,6 +52,9 @@ def tell(ending: BaseException) -> None:
         if ending.code is not None and not isinstance(ending.code, int):
             print(ending.code, file=sys.stderr)
         return
+    if isinstance(ending, KeyboardInterrupt) and _is_importing(ending.__traceback__):
+        print("interrupted", file=sys.stderr)
+        return
     if isinstance(ending, ModuleNotFoundError) and (advice := _advice(ending)):
         ending.add_note(advice)
     each: BaseException | None = ending
@@ -85,6 +88,18 @@ def _advice(error: ModuleNotFoundError) -> str:
     if name.endswith(("_msgs", "_interfaces")):
         return f"help: put the interfaces of '{name}' among those of your project, and run `ifgen generate`"
     return ""
+
+
+def _is_importing(trace: TracebackType | None) -> bool:
+    """Whether a program still imported its modules, where nobody wants to read where."""
+    own = _without_ours(trace)
+    frame = None if own is None else own.tb_next
+    while frame is not None:
+        code = frame.tb_frame.f_code
+        if code.co_name == "<module>" or code.co_filename in _IMPORTING:
+            return True
+        frame = frame.tb_next
+    return False
 
 
 def _without_ours(trace: TracebackType | None) -> TracebackType | None:

@@ -200,6 +200,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
             executor.spin_once()
     finally:
         executor.remove_node(node)
+        executor.context._call_back()
 
 
 def spin_until_future_complete(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import atexit
+import os
 import sys
 import threading
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from types import MethodType, TracebackType
 from typing import Any, Protocol
-from weakref import WeakMethod
+from weakref import WeakMethod, WeakSet
 
 from rclpy.destroyable import DestroyableType
 from rclpy.impl import program
@@ -88,6 +90,7 @@ class Context(AbstractContextManager["Context"]):
             )
             if initialize_logging and not self._logging_initialized:
                 self._logging_init()
+        _initialised.add(self)
 
     def ok(self) -> bool:
         """Return whether it is initialised and not shut down."""
@@ -101,26 +104,28 @@ class Context(AbstractContextManager["Context"]):
         """
         if self.__context is None:
             raise RuntimeError("Context must be initialized before it can be shutdown")
-        with self.__context, self._lock:
-            self.__context.shutdown()
-            callbacks = self._end()
-        _call(callbacks)
+        try:
+            with self.__context, self._lock:
+                self.__context.shutdown()
+                self._logging_fini()
+        finally:
+            self._call_back()
 
     def try_shutdown(self) -> None:
         """Shut it down if it is up."""
         if self.__context is None:
             return
         with self.__context, self._lock:
-            if not self.__context.ok():
-                return
-            self.__context.shutdown()
-            callbacks = self._end()
-        _call(callbacks)
+            if self.__context.ok():
+                self.__context.shutdown()
+            self._logging_fini()  # also after a signal
+        self._call_back()
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
         """Call this at shutdown, or now if that has been.
 
-        Bound methods are held weakly, functions strongly.
+        After Ctrl-C or SIGTERM the thread that spins calls it, or else `shutdown`, `try_shutdown` or the end
+        of the program. Upstream does not call it then. Bound methods are held weakly, functions strongly.
         """
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
@@ -159,10 +164,13 @@ class Context(AbstractContextManager["Context"]):
             if weak_method in self._callbacks:
                 self._callbacks.remove(weak_method)
 
-    def _end(self) -> list[WeakMethod[MethodType] | Callable[[], object]]:
-        self._logging_fini()
-        callbacks, self._callbacks = self._callbacks, []
-        return callbacks
+    def _call_back(self) -> None:
+        """Call once what `on_shutdown` was given, if it was shut down, by a signal perhaps."""
+        if self.ok():
+            return
+        with self._lock:
+            callbacks, self._callbacks = self._callbacks, []
+        _call(callbacks)
 
     def _logging_init(self) -> None:
         here = program.current()
@@ -185,7 +193,32 @@ class Context(AbstractContextManager["Context"]):
 
 
 def _call(callbacks: list[WeakMethod[MethodType] | Callable[[], object]]) -> None:
+    """Call all of them, then raise what the first of them raised that failed."""
+    faults: list[Exception] = []
     for held in callbacks:
         callback = held() if isinstance(held, WeakMethod) else held
         if callback is not None:
-            callback()
+            try:
+                callback()
+            except Exception as error:
+                faults.append(error)
+    if faults:
+        raise faults[0]
+
+
+def _call_back_at_exit() -> None:
+    for context in list(_initialised):
+        if context.handle is not None and not context.ok():  # a signal has ended it, and nobody has noticed
+            context._call_back()
+
+
+def _start_over_in_fork() -> None:
+    global g_logging_configure_lock  # noqa: PLW0603 - a thread that is not in the fork may have held the other one
+    g_logging_configure_lock = threading.Lock()
+    _initialised.clear()  # the end of the fork is not that of the program that was forked
+
+
+_initialised: WeakSet[Context] = WeakSet()
+atexit.register(_call_back_at_exit)
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_start_over_in_fork)

@@ -211,8 +211,11 @@ class Executor(AbstractContextManager["Executor"]):
     def spin(self) -> None:
         """Execute callbacks until the executor or its context is shut down."""
         queue = self._queue
-        while self._context.ok() and not queue.closed:
-            self.spin_once()
+        try:
+            while self._context.ok() and not queue.closed:
+                self.spin_once()
+        finally:
+            self._context._call_back()
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
         """Execute callbacks until a future is done or given up, or for `timeout_sec` seconds."""
@@ -305,6 +308,8 @@ class Executor(AbstractContextManager["Executor"]):
                 seconds = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
             end = yield from self._finder.find(seconds, nodes, condition, self.can_execute)
             if end is not None:
+                if end is End.EXTERNAL_SHUTDOWN:
+                    self._context._call_back()
                 raise _EXCEPTIONS[end]
             if not again:
                 return

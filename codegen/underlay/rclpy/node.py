@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 import weakref
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from rcl_interfaces.msg import (
@@ -20,7 +20,7 @@ from rcl_interfaces.msg import (
 from rcl_interfaces.msg import Parameter as ParameterMsg
 
 from rclpy._parameters import rules
-from rclpy._parameters.changes import keep_or_remove
+from rclpy._parameters.changes import Restoring, keep_or_remove, must_fit
 from rclpy._parameters.declarations import read_declaration
 from rclpy._parameters.listing import check_strings, list_names
 from rclpy._parameters.mismatch import ON_TYPE_MISMATCH, follow_policy
@@ -46,6 +46,7 @@ from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
+from rclpy.impl.messages import cleaned, wrong_return
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.logging import get_logger
 from rclpy.logging_service import LoggingService
@@ -60,7 +61,7 @@ from rclpy.time_source import TimeSource
 from rclpy.timer import Rate, Timer
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.type_description_service import TypeDescriptionService
-from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type, class_of
 from rclpy.utilities import get_default_context
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_namespace import validate_namespace
@@ -419,6 +420,9 @@ class Node:
         self.handle.use_parameters(names)
         if known := [name for name in names if name in self._parameters]:
             raise ParameterAlreadyDeclaredException(known)
+        for parameter, descriptor in declarations:
+            must_fit(parameter.to_parameter_msg())
+            must_fit(descriptor)
         self._declare_parameter_common(
             [parameter for parameter, _ in declarations],
             {parameter.name: descriptor for parameter, descriptor in declarations},
@@ -563,6 +567,9 @@ class Node:
 
         Raises ParameterNotDeclaredException; those before are set then.
         """
+        for parameter in parameter_list:
+            if isinstance(parameter, Parameter):  # else refused below
+                must_fit(parameter.to_parameter_msg())
         return [self._set_parameters_atomically([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
@@ -571,11 +578,13 @@ class Node:
 
     def _set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         if self._pre_set_parameters_callbacks:
-            parameter_list = [
-                parameter
-                for callback in self._pre_set_parameters_callbacks
-                for parameter in callback(parameter_list)
-            ]
+            changed: list[Parameter] = []
+            for callback in self._pre_set_parameters_callbacks:
+                answer: object = callback(parameter_list)
+                if not isinstance(answer, Iterable):
+                    raise TypeError(wrong_return("a pre-set callback of parameters", answer, list))
+                changed += answer
+            parameter_list = changed
             if not parameter_list:
                 return rules.refused(
                     "parameter list cannot be empty, this might be due to pre_set_parameters_callback "
@@ -592,6 +601,8 @@ class Node:
         ]
         if undeclared and not self._allow_undeclared_parameters:
             raise ParameterNotDeclaredException(undeclared)
+        for parameter in parameter_list:
+            must_fit(parameter.to_parameter_msg())
 
     def _set_parameters_atomically_common(
         self,
@@ -599,7 +610,21 @@ class Node:
         descriptors: _Descriptors | None = None,
         allow_not_set_type: bool = False,
     ) -> SetParametersResult:
-        """Check, ask, set, publish, notify. `descriptors` come with a declaration."""
+        """Check, ask, set, publish, notify. `descriptors` come with a declaration.
+
+        Nothing is changed where this is refused, or fails before the change is published.
+        """
+        with Restoring(parameter_list, self._parameters, self._descriptors) as restoring:
+            result = self.__set_and_publish(parameter_list, descriptors, allow_not_set_type)
+            restoring.is_needed = not result.successful
+        if result.successful:
+            for post_set in list(self._post_set_parameters_callbacks):
+                post_set(parameter_list)
+        return result
+
+    def __set_and_publish(
+        self, parameter_list: list[Parameter], descriptors: _Descriptors | None, allow_not_set_type: bool
+    ) -> SetParametersResult:
         result = self.__check(
             parameter_list,
             self._descriptors if descriptors is None else descriptors,
@@ -624,9 +649,7 @@ class Node:
             follow_policy(self)
         event.stamp = self._clock.now().to_msg()
         if self._parameter_event_publisher is not None:
-            self._parameter_event_publisher.publish(event)
-        for post_set in list(self._post_set_parameters_callbacks):
-            post_set(parameter_list)
+            self._parameter_event_publisher.publish(cleaned(event))
         return rules.accepted()
 
     def __check(
@@ -747,6 +770,7 @@ class Node:
         profile = self._validate_qos_or_depth_parameter(qos_profile)
         self.__declare_qos_overrides(Publisher, topic, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
+        msg_type = class_of(msg_type)
         handle = self.__create_handle(_rclpy.Publisher, msg_type, topic, profile, is_service=False)
         try:
             publisher = publisher_class(
@@ -858,6 +882,7 @@ class Node:
         self.__declare_qos_overrides(Subscription, topic, profile, qos_overriding_options)
         group = callback_group or self.default_callback_group
         check_is_valid_msg_type(msg_type)
+        msg_type = class_of(msg_type)
         handle = self.__create_handle(_rclpy.Subscription, msg_type, topic, profile, is_service=False)
         try:
             subscription = Subscription(

@@ -18,6 +18,7 @@ from rcl_interfaces.srv import (
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.impl.messages import cleaned
 from rclpy.impl.waiting import wait_for_graph
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
@@ -180,7 +181,7 @@ def _messages(parameters: Parameters) -> list[ParameterMsg]:
 
 
 def _call(client: Client, request: Any, callback: Callback | None) -> Future:
-    future = client.call_async(request)
+    future = client.call_async(cleaned(request))
     if callback:
         future.add_done_callback(callback)
     return future

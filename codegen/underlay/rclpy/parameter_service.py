@@ -17,6 +17,7 @@ from rcl_interfaces.srv import (
 )
 
 from rclpy.exceptions import ParameterNotDeclaredException, ParameterUninitializedException
+from rclpy.impl.messages import cleaned
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_parameters
 from rclpy.validate_topic_name import TOPIC_SEPARATOR_STRING
@@ -41,7 +42,9 @@ class ParameterService:
         )
         for service_type, name, callback in services:
             full_name = TOPIC_SEPARATOR_STRING.join((node_name, name))
-            node.create_service(service_type, full_name, callback, qos_profile=qos_profile_parameters)
+            node.create_service(
+                service_type, full_name, _with_clean_texts(callback), qos_profile=qos_profile_parameters
+            )
 
     # One unknown name empties the whole answer: that is how a client learns of it.
 
@@ -97,3 +100,7 @@ class ParameterService:
         if node is None:
             raise ReferenceError("Expected valid node weak reference")
         return node
+
+
+def _with_clean_texts(callback: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    return lambda request, response: cleaned(callback(request, response))

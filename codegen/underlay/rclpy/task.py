@@ -55,6 +55,11 @@ class Future(Generic[T]):
     def __await__(self) -> Generator[None, None, T]:
         while self._state is _PENDING:
             yield
+        if self._state is _CANCELLED:
+            warnings.warn(
+                "the future that is awaited was cancelled, so `await` returns None: ask `future.cancelled()`",
+                stacklevel=2,
+            )
         return self.result()
 
     def _pending(self) -> bool:
@@ -165,6 +170,18 @@ class Future(Generic[T]):
                 warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
 
+def explained(error: Exception) -> Exception:
+    """The error that a callback has raised, with what to do where it looked for asyncio."""
+    if type(error) is not RuntimeError or error.args != ("no running event loop",):
+        return error
+    explanation = RuntimeError(
+        "no running event loop: an executor of rclpy runs this callback, not asyncio. Await futures of "
+        "rclpy, which a timer may complete, or run asyncio on a thread of its own"
+    )
+    explanation.__cause__ = error
+    return explanation
+
+
 if TYPE_CHECKING:
     _FutureOf = Future
 else:
@@ -225,7 +242,7 @@ class Task(_FutureOf[T]):
             self.set_result(end.value)
         except Exception as error:
             self._handler = None
-            self.set_exception(error)
+            self.set_exception(explained(error))
         else:
             self._handler = None
             self.set_result(result)

@@ -57,5 +57,10 @@ def check_is_valid_srv_type(srv_type: Any) -> None:
         )
 
 
+def class_of(msg_type: Any) -> Any:
+    """The class, where a message is given in its place: upstream takes that, too."""
+    return msg_type if isinstance(msg_type, type) else msg_type.__class__
+
+
 def _is_interface(cls: Any) -> bool:
     return is_message_class(cls) or is_service_class(cls) or getattr(cls, "Goal", None) is not None

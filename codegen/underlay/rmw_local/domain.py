@@ -6,6 +6,7 @@ liveliness, then status. Listeners run after the domain's lock is released.
 
 from __future__ import annotations
 
+import os
 import threading
 from collections import deque
 from collections.abc import Callable, Iterator
@@ -113,7 +114,16 @@ def endpoints(domain: Domain) -> Iterator[Writer | Reader | ServiceEndpoint]:
         yield from service.clients
 
 
-def forget_domains() -> None:
-    """Let contexts that are made in a fork meet nobody whom the forked process has."""
-    Domain._creation = threading.Lock()  # somebody may have had the other one
+def _forget_domains() -> None:
+    """Let contexts that are made in a fork meet nobody whom the forked process has.
+
+    Threads that do not exist in the fork may have held the locks.
+    """
+    Domain._creation = threading.Lock()
+    for domain in Domain._domains.values():
+        domain.lock = threading.Lock()
     Domain._domains.clear()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget_domains)

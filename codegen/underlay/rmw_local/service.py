@@ -137,8 +137,11 @@ class ServiceClient(ServiceEndpoint):
         """Whether a response or a failure waits."""
         return bool(self._queue or self._failures)
 
-    def send(self, request: Any) -> int:
-        """Send a request to every matched server; return its number, from 1."""
+    def send(self, request: Any, *, expects_server: bool = False) -> int:
+        """Send a request to every matched server; return its number, from 1.
+
+        Without a server it is never answered. It fails if a server is expected, else it stays pending.
+        """
         data = self.sends.serialize(request)
         number = next(self._numbers)
         letter = (data, timing.time_ns(), self.gid, number)
@@ -153,6 +156,9 @@ class ServiceClient(ServiceEndpoint):
                     end.accept(letter)
             if far and self.beyond is not None:
                 self.beyond(letter, servers)  # once, for all of them
+        elif expects_server:
+            self._failures.append((number, no_response(self.name, ["the action server"], "")))
+            self.notify()
         if self._observer is not None and not servers:
             self._observer.undelivered(self.name, 1, "requested while no service was matched")
         return number
@@ -200,6 +206,20 @@ class ServiceClient(ServiceEndpoint):
         servers, unfinished = asked
         self._unanswered[number] = servers, unfinished - 1
         return self._fail_if_all_are_gone(number, reason)
+
+    def expect_less(self, number: int, server: ServiceServer, reason: str) -> bool:
+        """Expect no answer of one server of this process; the rest as for `lose`."""
+        asked = self._unanswered.get(number)
+        if asked is None:
+            return False
+        servers, unfinished = asked
+        others = {each: end for each, end in servers.items() if each is not server}
+        if others:
+            self._unanswered[number] = others, unfinished
+            return self._fail_if_all_are_gone(number)
+        del self._unanswered[number]
+        self._failures.append((number, no_response(self.name, [server.node.full_name], reason)))
+        return True
 
     def expect_nothing(self) -> None:
         """Forget all requests: their futures stay pending."""
@@ -262,6 +282,18 @@ class ServiceServer(ServiceEndpoint):
             return
         elif self._observer is not None:
             self._observer.undelivered(self.name, 1, "answered when the client was gone")
+
+    def fail(self, client_gid: bytes, number: int, reason: str) -> None:
+        """Say that it does not answer a request."""
+        with self.node.participant.domain.lock:
+            client = self.clients.get(client_gid)
+            if client is not None and client.end.is_remote:
+                client = None
+            has_failed = client is not None and client.end.expect_less(number, self, reason)
+        if client is None:
+            self.drop((b"", 0, client_gid, number))
+        elif has_failed:
+            client.end.notify()
 
 
 class ServiceName:

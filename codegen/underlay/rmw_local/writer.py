@@ -152,6 +152,11 @@ class Writer(Endpoint):
             self.far[reader] = self._last_before(reader)
         self.settle_route()
 
+    def detach_in_fork(self) -> None:
+        """Deliver to other processes no longer, whoever held a lock when the process was forked."""
+        self.outlet = None
+        self.settle_route()
+
     def _last_before(self, reader: Reader) -> int:
         """The number of the last message that is not for a reader elsewhere."""
         return self.last_number
@@ -259,6 +264,11 @@ class DurableWriter(Writer):
             if outlet is not None:
                 self._replay(outlet)
             super().attach(outlet)
+
+    def detach_in_fork(self) -> None:
+        """Deliver to other processes no longer."""
+        self._lock = threading.Lock()
+        super().detach_in_fork()
 
     def _last_before(self, reader: Reader) -> int:
         """Readers that are durable get what is kept."""

@@ -150,21 +150,6 @@ def destroyed_handle(scene):
     print(ended.status, ended.result.sequence)
 
 
-def no_result(scene):
-    """Returning something other than a result breaks the spin that would send it."""
-
-    def execute(handle):
-        handle.succeed()
-
-    scene.server.register_execute_callback(execute)
-    future = scene.send().get_result_async()
-    try:
-        until(future.done, scene.executor, seconds=5.0)
-    except Exception:  # the class differs: the real one fails while converting, ours refuses the value
-        print("no result: spin raises")
-    print("done", future.done())
-
-
 def feedback(scene):
     """Feedback goes to the goal that it is about."""
     heard = []
@@ -308,7 +293,6 @@ def main() -> None:
         duplicates,
         handles,
         constructions,
-        no_result,
         destroyed_handle,
     ):
         print(f"--- {case.__name__}")

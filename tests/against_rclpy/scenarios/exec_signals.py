@@ -16,7 +16,6 @@ from rclpy.signals import (
     install_signal_handlers,
     uninstall_signal_handlers,
 )
-from rclpy.utilities import get_default_context
 from transcript import attempt, until
 
 
@@ -46,15 +45,13 @@ def main() -> None:
             other = Context()
             other.init()
             rclpy.init()
-            called: list[str] = []
-            get_default_context().on_shutdown(lambda: called.append("on_shutdown"))
             node, executor = rclpy.create_node("n"), kind()
             guard = SignalHandlerGuardCondition()
             executor.add_node(node)
             kill_soon(number)
             attempt(f"{number.name} {kind.__name__} spin", executor.spin)
-            until(lambda: not (rclpy.ok() or other.ok()))  # without a call of on_shutdown
-            print(rclpy.ok(), other.ok(), called, get_current_signal_handlers_options())
+            until(lambda: not (rclpy.ok() or other.ok()))
+            print(rclpy.ok(), other.ok(), get_current_signal_handlers_options())
             attempt("shutdown", rclpy.shutdown)
             attempt("try_shutdown", rclpy.try_shutdown)
             attempt("destroy", node.destroy_node)

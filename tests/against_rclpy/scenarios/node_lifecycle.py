@@ -116,8 +116,6 @@ def walks() -> None:
     odd("fails_later", on_activate=FAILURE)
     odd("deactivation_fails", on_deactivate=FAILURE, on_shutdown=ERROR)
     odd("cleanup_fails", on_cleanup=FAILURE)
-    odd("wrong", on_configure=3)
-    odd("none", on_configure=None)
 
     class NoArgument(LifecycleNode):
         def on_configure(self) -> Any:  # type: ignore[override]

@@ -11,11 +11,14 @@ from typing import Any
 
 import message_filters
 import pytest
+import rclpy
 from hypothesis import given
 from hypothesis import strategies as st
 from message_filters import ApproximateTimeSynchronizer, SimpleFilter, TimeSynchronizer
 from rclpy.clock import ROSClock
 from rclpy.duration import Duration
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.task import Future
 from rclpy.time import Time
 from std_msgs.msg import Header, String
 
@@ -237,3 +240,54 @@ def test_arguments_come_after_the_messages() -> None:
     second.signalMessage(two)
     assert calls == [(one, two, "a", 1), (one, two)]
     assert message_filters.__all__
+
+
+def test_the_executor_of_the_subscribers_runs_a_coroutine_function() -> None:
+    """Upstream's never awaits it (message_filters#123)."""
+    rclpy.init()
+    node, sets = rclpy.create_node("fusion"), []
+    subscribers = [message_filters.Subscriber(node, Header, topic) for topic in ("left", "right")]
+
+    class Stamped(SimpleFilter):
+        def add(self, header: Header) -> None:
+            self.signalMessage(SimpleNamespace(header=header))
+
+    stamped = [Stamped(), Stamped()]
+    for subscriber, each in zip(subscribers, stamped, strict=True):
+        subscriber.registerCallback(each.add)
+    synchronizer = ApproximateTimeSynchronizer(stamped, 10, 0.1)
+    future: Future = Future()
+
+    async def fuse(*msgs: Any) -> None:
+        await future
+        sets.append(len(msgs))
+
+    synchronizer.registerCallback(fuse)
+    publishers = [node.create_publisher(Header, topic, 10) for topic in ("left", "right")]
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    for _ in range(500):
+        if all(publisher.get_subscription_count() for publisher in publishers):
+            break
+        executor.spin_once(timeout_sec=0.02)
+    for publisher in publishers:
+        publisher.publish(Header())
+    node.create_timer(0.1, lambda: future.set_result(None))
+    for _ in range(500):
+        if sets:
+            break
+        executor.spin_once(timeout_sec=0.02)
+    assert sets[0] == 2
+    rclpy.shutdown()
+
+
+def test_a_coroutine_function_without_an_executor_is_refused() -> None:
+    first, second = SimpleFilter(), SimpleFilter()
+    synchronizer = TimeSynchronizer([first, second], 2)
+
+    async def fuse(*_: Any) -> None: ...
+
+    synchronizer.registerCallback(fuse)
+    first.signalMessage(message(0))
+    with pytest.raises(RuntimeError, match=r"no executor can run the coroutine function .*fuse"):
+        second.signalMessage(message(0))

@@ -1,7 +1,8 @@
 """A process that has children while it publishes: `forking.py HOW`.
 
-HOW is `os`, `fork`, `forkserver` or `spawn`; or `early`: `os.fork` before it has met anybody. Each child makes a
-context of its own, and prints whom it meets there.
+HOW is `os`, `fork`, `forkserver` or `spawn`; `early`: `os.fork` before it has met anybody; or `volley`: forks while
+the first child rings, and the parent opens its session. Each child makes a context of its own, and prints whom it meets
+there.
 """
 
 import multiprocessing
@@ -66,6 +67,18 @@ if __name__ == "__main__":
     publisher = node.create_publisher(Int64, "count", 10)
     threading.Thread(target=publish, daemon=True).start()
     threading.Thread(target=spin, daemon=True).start()
+    if how == "volley":
+        fork = multiprocessing.get_context("fork")
+        children = [fork.Process(target=be_a_child, args=(number, 0)) for number in range(6)]
+        for child in children:
+            child.start()
+            time.sleep(0.02)
+        for child in children:
+            child.join(20.0)
+            if child.is_alive():
+                child.kill()
+        print("codes", *(child.exitcode for child in children), flush=True)
+        sys.exit(0)
     while how != "early" and not publisher.get_subscription_count():
         time.sleep(0.01)
     for number in range(1, 2 if how == "early" else CHILDREN + 1):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy._executor.ready_queue import ReadyQueue
 from rclpy._executor.tasks import TaskList, Work, run, run_in_pool
 from rclpy._executor.watch import Watch
-from rclpy.task import Task
+from rclpy.task import Task, explained
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
@@ -68,6 +68,10 @@ class CallbackRunner:
                 self._queue.drop_if_destroyed(watch)
             else:
                 unfinished = watch.call(taken, executor)
+        except RuntimeError as error:
+            if (fault := explained(error)) is not error:
+                raise fault from error
+            raise
         finally:
             if unfinished is None:
                 group.ending_execution(entity)
@@ -77,6 +81,10 @@ class CallbackRunner:
                 coroutine.send(None)
             except StopIteration:
                 return
+            except RuntimeError as error:
+                if (fault := explained(error)) is not error:
+                    raise fault from error
+                raise
             task = Task(coroutine, executor=executor)
             task._entity = entity
             self._tasks.add(task, entity, watch.node)
@@ -90,7 +98,12 @@ class CallbackRunner:
 
     def run_in_pool(self, work: Work) -> None:
         """Run a task on a thread of a pool, and keep what it raises."""
-        run_in_pool(work[0])
+        task = work[0]
+        run_in_pool(task)
+        if task._exception is not None:
+            # The thread that spins raises it, as soon as it has something to do.
+            self._tasks.add(Task(_do_nothing), None, None)
+            self._queue.poke()
 
     async def _finish(self, unfinished: Coroutine[Any, Any, Any], entity: Any, group: CallbackGroup) -> None:
         """Await the rest of a callback; its group stays occupied until then."""
@@ -99,3 +112,7 @@ class CallbackRunner:
         finally:
             group.ending_execution(entity)
             self._queue.poke()
+
+
+def _do_nothing() -> None:
+    pass

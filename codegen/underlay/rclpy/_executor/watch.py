@@ -7,8 +7,9 @@ that something may have happened, so that an idle entity costs an executor nothi
 from __future__ import annotations
 
 import inspect
+import warnings
 from collections.abc import Callable, Coroutine
-from types import CoroutineType
+from types import CoroutineType, GeneratorType
 from typing import TYPE_CHECKING, Any, Protocol
 
 from ifgen_runtime.errors import ServerGoneError
@@ -252,15 +253,23 @@ class ServiceWatch(Watch):
         service = self.entity
         request, header = taken
         callback = service.callback
-        result = callback(request, service.srv_type.Response())
-        unfinished = _unfinished(result, callback)
-        if unfinished is not None:
-            return self._respond_later(unfinished, header)
-        service.send_response(result, header)
+        try:
+            result = callback(request, service.srv_type.Response())
+            unfinished = _unfinished(result, callback)
+            if unfinished is not None:
+                return self._respond_later(unfinished, header)
+            service.send_response(result, header)
+        except BaseException as error:
+            self.source.fail(header.request_id, f"its callback has failed ({type(error).__name__})")
+            raise
         return None
 
     async def _respond_later(self, unfinished: Coroutine[Any, Any, Any], header: Any) -> None:
-        self.entity.send_response(await unfinished, header)
+        try:
+            self.entity.send_response(await unfinished, header)
+        except BaseException as error:
+            self.source.fail(header.request_id, f"its callback has failed ({type(error).__name__})")
+            raise
 
 
 def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any, Any] | None:
@@ -270,4 +279,7 @@ def _unfinished(result: Any, callback: Callable[..., Any]) -> Coroutine[Any, Any
     """
     if type(result) is CoroutineType and inspect.iscoroutinefunction(callback):
         return result
+    if type(result) is GeneratorType:
+        name = getattr(callback, "__qualname__", repr(callback))
+        warnings.warn(f"nothing runs the generator function {name}: make it an `async def`", stacklevel=2)
     return None

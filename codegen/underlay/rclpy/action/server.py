@@ -17,6 +17,7 @@ from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
 from rclpy.impl.logging_severity import LoggingSeverity as _LoggingSeverity
+from rclpy.impl.messages import wrong_return
 from rclpy.impl.rcl.action_goal import key_of
 from rclpy.impl.rcutils_logger import RcutilsLogger as _RcutilsLogger
 from rclpy.impl.typed import ActionT_co, Generic
@@ -157,9 +158,12 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
         goal_info = GoalInfo(goal_id=request.goal_id)
         goal_id = goal_info.goal_id.uuid
         self._debug("New goal request with ID: {0}", goal_id)
-        goal_handle = None
-        if not self._handle.goal_exists(goal_info) and await self._is_welcome(request.goal):
-            goal_handle = self._accept(goal_info, request.goal)
+        goal_handle = fault = None
+        try:
+            if not self._handle.goal_exists(goal_info) and await self._is_welcome(request.goal):
+                goal_handle = self._accept(goal_info, request.goal)
+        except Exception as error:  # raised below: a client without an answer would wait for ever
+            fault = error
 
         response = self._action_type.Impl.SendGoalService.Response(
             accepted=goal_handle is not None, stamp=goal_info.stamp
@@ -169,12 +173,27 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
         except RCLError:
             self._logger.warn("Failed to send goal response (the client may have gone away)")
             return
+        if fault is not None:
+            raise fault
         if goal_handle is None:
             self._debug("New goal rejected: {0}", goal_id)
             return
         self._debug("New goal accepted: {0}", goal_id)
         self._handle.publish_status()
-        await await_or_execute(self._handle_accepted_callback, goal_handle)
+        try:
+            await await_or_execute(self._handle_accepted_callback, goal_handle)
+        except Exception:
+            if goal_handle.status == GoalStatus.STATUS_ACCEPTED:  # nobody executes it now
+                goal_handle._update_state(GoalEvent.EXECUTE)
+                goal_handle.abort()
+                self._result_futures[key_of(goal_handle.goal_id)].set_result(self._aborted())
+            raise
+
+    def _aborted(self) -> Any:
+        """A response without a result."""
+        return self._action_type.Impl.GetResultService.Response(
+            status=GoalStatus.STATUS_ABORTED, result=self._action_type.Result()
+        )
 
     async def _is_welcome(self, goal: Any) -> bool:
         response = await await_or_execute(self._goal_callback, goal)
@@ -214,12 +233,29 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
             result = self._action_type.Result()
             self._logger.error(f"Error raised in execute callback: {error}")
             traceback.print_exc()
+        is_usable = isinstance(result, self._action_type.Result)
+        if not is_usable:
+            fault = wrong_return(
+                f"the execute callback of action '{self._handle.name}'", result, self._action_type.Result
+            )
+            self._logger.error(f"{fault}. The client gets an empty result with the status aborted")
+        if not self._handle.pointer:
+            self._logger.warning(
+                f"action server '{self._handle.name}' was destroyed while it executed a goal: "
+                "the result goes to nobody"
+            )
         if goal_handle.is_active:
-            self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {goal_id.uuid}")
+            if is_usable:
+                self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {goal_id.uuid}")
             goal_handle.abort()
         self._debug("Goal with ID {0} finished with state {1}", goal_id.uuid, goal_handle.status)
 
-        response = self._action_type.Impl.GetResultService.Response(status=goal_handle.status, result=result)
+        if is_usable:
+            response = self._action_type.Impl.GetResultService.Response(
+                status=goal_handle.status, result=result
+            )
+        else:
+            response = self._aborted()
         future.set_result(response)
         with suppress(ValueError):  # the goal has expired, or the server is destroyed
             self.remove_future(future)  # it is kept for a while, and executors look at every future there is
@@ -231,19 +267,29 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
         response = self._handle.process_cancel_request(
             request, self._action_type.Impl.CancelGoalService.Response
         )
-        response.goals_canceling = [
-            goal_info for goal_info in response.goals_canceling if await self._cancel(goal_info)
-        ]
+        fault, asked, response.goals_canceling = None, response.goals_canceling, []
+        for goal_info in asked:
+            try:
+                if await self._cancel(goal_info):
+                    response.goals_canceling.append(goal_info)
+            except Exception as error:  # raised below: a client without an answer would wait for ever
+                fault = error
         try:
             self._handle.send_cancel_response(header, response)
         except RCLError:
             self._logger.warn("Failed to send cancel response (the client may have gone away)")
+        if fault is not None:
+            raise fault
 
     async def _cancel(self, goal_info: Any) -> bool:
         goal_handle = self._goal_handles.get(key_of(goal_info.goal_id))
         if goal_handle is None:
             return False
-        if await await_or_execute(self._cancel_callback, goal_handle) != CancelResponse.ACCEPT:
+        answer = await await_or_execute(self._cancel_callback, goal_handle)
+        if not isinstance(answer, CancelResponse):
+            name = f"the cancel callback of action '{self._handle.name}'"
+            self._logger.warning(f"{wrong_return(name, answer, CancelResponse)}. The goal is not cancelled")
+        if answer is not CancelResponse.ACCEPT:
             return False
         try:
             goal_handle._update_state(GoalEvent.CANCEL_GOAL)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import threading
 import weakref
 from typing import TYPE_CHECKING, Any
@@ -39,6 +40,13 @@ class Program:
             with contextlib.suppress(RuntimeError):  # it is being destroyed
                 guard.trigger_guard_condition()
 
+    def renew_locks(self) -> None:
+        """Start over in a fork: threads that do not exist there may have held any lock."""
+        self.lock = threading.RLock()
+        for kept in (self.logging, self.rosout):
+            if kept is not None:
+                kept.renew_locks()
+
 
 _PROGRAM = Program()
 
@@ -46,3 +54,7 @@ _PROGRAM = Program()
 def current() -> Program:
     """The state of this process."""
     return _PROGRAM
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_PROGRAM.renew_locks)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import traceback
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -9,6 +10,7 @@ from lifecycle_msgs import msg, srv
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.lending import lend
+from rclpy.impl.messages import wrong_return
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.service import Service
@@ -228,14 +230,25 @@ class LifecycleNodeMixin(ManagedEntity):
         return answer
 
     def __execute_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
-        """Run the callback of the state in which the machine is now."""
-        callback = self._callbacks.get(self._state_machine.current_state[0])
+        """Run the callback of the state in which the machine is now.
+
+        The log says why it counts as ERROR, which upstream does not.
+        """
+        state_id, label = self._state_machine.current_state
+        callback = self._callbacks.get(state_id)
         if callback is None:
             return TransitionCallbackReturn.SUCCESS
         try:
-            return callback(before)
-        except Exception:
-            return TransitionCallbackReturn.ERROR
+            answer: object = callback(before)
+        except Exception as error:
+            fault = f"raised {type(error).__name__}: {error}\n{traceback.format_exc()}"
+        else:
+            if isinstance(answer, TransitionCallbackReturn):
+                return answer
+            fault = wrong_return("", answer, TransitionCallbackReturn).strip()
+        node: Any = self
+        node.get_logger().error(f"the callback of the transition state '{label}' {fault}")
+        return TransitionCallbackReturn.ERROR
 
     def __checked_machine(self) -> Any:
         if not self._state_machine.initialized:

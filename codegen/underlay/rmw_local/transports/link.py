@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import _thread
 import itertools
-import threading
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import partial
@@ -82,25 +81,28 @@ class Link:
         self._teller.close()
         self._background.end(_FAREWELL)
         self._transport.close()
-        self._part()
-
-    def forget(self) -> None:
-        """Do the same in a forked process, where the transport and all locks are somebody else's."""
-        self._domain.lock = threading.Lock()
-        self._part()
-
-    def _part(self) -> None:
         self._domain.link = None
         with self._domain.lock:
             for endpoint in endpoints(self._domain):
                 if isinstance(endpoint, Writer):
                     endpoint.attach(None)
-                elif isinstance(endpoint, ServiceClient | ServiceServer):
-                    endpoint.beyond = None
-                if isinstance(endpoint, ServiceClient):
-                    endpoint.expect_nothing()
+                self._part(endpoint)
             changed = self.others.remove_all()
         _notify(changed)
+
+    def forget(self) -> None:
+        """Send nothing more by it in a forked process, where threads that are gone may hold any lock."""
+        self._domain.link = None
+        for endpoint in endpoints(self._domain):
+            if isinstance(endpoint, Writer):
+                endpoint.detach_in_fork()
+            self._part(endpoint)
+
+    def _part(self, endpoint: Writer | Reader | ServiceEndpoint) -> None:
+        if isinstance(endpoint, ServiceClient | ServiceServer):
+            endpoint.beyond = None
+        if isinstance(endpoint, ServiceClient):
+            endpoint.expect_nothing()
 
     def announce(self, entity: Local) -> None:
         """Show a node or an endpoint to others, unless that is done already, or none of their business."""

@@ -12,11 +12,11 @@ import itertools
 import os
 import time
 from contextlib import suppress
+from importlib import import_module
 from typing import TYPE_CHECKING, ClassVar, Final
 
 from ifgen_runtime.neighbours import BELL
 
-from rmw_local.domain import forget_domains
 from rmw_local.notices import say
 from rmw_local.transports.doorbell import CLOCK, IS_POSSIBLE, Doorbell
 from rmw_local.transports.errors import ConfigurationError, TransportError
@@ -30,6 +30,30 @@ if TYPE_CHECKING:
     from rmw_local.transports.zenoh.engine import ZenohTransport
 
 # Late imports: of the link and of Zenoh, when there is somebody to talk to; of settings, when there are any.
+
+_LATE: Final = (
+    "ifgen_runtime.adapters",
+    "ifgen_runtime.codec.decoding",
+    "ifgen_runtime.codec.encoding",
+    "ifgen_runtime.installation",
+    "ifgen_runtime.mismatch.conversion",
+    "ifgen_runtime.mismatch.told",
+    "ifgen_runtime.type_description",
+    "importlib.util",
+    "rmw_local.mismatch.encounter",
+    "rmw_local.mismatch.origin",
+    "rmw_local.mismatch.passage",
+    "rmw_local.mismatch.telling",
+    "rmw_local.statistics",
+    "rmw_local.transports.adapted",
+    "rmw_local.transports.asking",
+    "rmw_local.transports.environment",
+    "rmw_local.transports.link",
+    "rmw_local.transports.receipts",
+    "rmw_local.transports.zenoh.config",
+    "rmw_local.transports.zenoh.engine",
+)
+"""The modules that threads of ours, and Zenoh's, import when they need them."""
 
 _PATIENCE: Final = 1.0  # [s] until endpoints count as unmatched where Zenoh is missing
 _CHECK_EVERY: Final = 1.0  # [s], for a router
@@ -296,15 +320,22 @@ def _leave() -> None:
         reach.end()
 
 
+def _load() -> None:
+    """Import what a thread of ours may be importing: a fork meanwhile would wait for that thread for ever."""
+    if Reach.all:
+        for name in _LATE:
+            with suppress(ImportError):  # Zenoh may be missing
+                import_module(name)
+
+
 def _forget() -> None:
     for reach in Reach.all:
         reach.forget()
     Reach.all.clear()
-    forget_domains()
 
 
 _inherited: list[Reach] = []  # What would end with an object, such as a session, must not end in a fork.
 _inherited_sessions: list[object] = []  # A fork has none of Zenoh's threads; opening a session hangs there.
 atexit.register(_leave)
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget)
+    os.register_at_fork(before=_load, after_in_child=_forget)

@@ -76,12 +76,12 @@ class ActionClient(ActionEntity):
     def send_cancel_request(self, pyrequest: Any) -> int:
         """Ask the server to cancel goals; return the request's number."""
         self._must_live("Failed to send cancel request")
-        return self._cancel.send_request(pyrequest)
+        return self._cancel.send_request(pyrequest, expects_server=True)
 
     def send_result_request(self, pyrequest: Any) -> int:
         """Ask the server for the result of a goal; return the request's number."""
         self._must_live("Failed to send result request")
-        return self._result.send_request(pyrequest)
+        return self._result.send_request(pyrequest, expects_server=True)
 
     def take_goal_response(self, pymsg_type: type[Any]) -> tuple[int | None, Any]:
         """Take (number of the request, response or failure); (None, None) if there is none."""

@@ -53,6 +53,11 @@ class ActionEntity(Destroyable):
             tuple[str, int]
         ] = []  # where they are in the wait set that they were added to last
 
+    @property
+    def name(self) -> str:
+        """The name that the program gave to the action."""
+        return self._name
+
     def _own(self, part_class: Any, interface: Any, name: str, qos_profile: object) -> Any:
         """Create a hidden part; if that fails, nothing of the whole remains."""
         try:

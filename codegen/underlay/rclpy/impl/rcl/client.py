@@ -50,11 +50,11 @@ class Client(SourceHandle, EndpointHandle):
         """The node's handle."""
         return self._node
 
-    def send_request(self, pyrequest: Any) -> int:
-        """Send a request; return its number."""
+    def send_request(self, pyrequest: Any, *, expects_server: bool = False) -> int:
+        """Send a request; return its number. If a server is expected, it fails without one."""
         if self._destroyed:
             raise RCLError("failed to send request: client pointer is invalid")
-        number = self._client.send(pyrequest)
+        number = self._client.send(pyrequest, expects_server=expects_server)
         if self._introspection is not None:
             self._introspection.record(REQUEST_SENT, self._client.gid, number, request=pyrequest)
         return number

@@ -82,7 +82,10 @@ class Console:
         """Write a line, whole even if several threads write."""
         stream = self._stream()
         if stream is not None and not stream.closed:
-            stream.write(text + "\n")
+            try:
+                stream.write(text + "\n")
+            except UnicodeEncodeError as error:  # such as ASCII, which has no accents
+                stream.write(text.encode(error.encoding, "backslashreplace").decode(error.encoding) + "\n")
             stream.flush()
 
     def _stream(self) -> TextIO | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 from types import TracebackType
 from typing import Any, SupportsIndex
@@ -89,3 +90,12 @@ class Destroyable(Unpicklable):
 
     def _on_destroy(self) -> None:
         """Release what the handle holds; runs exactly once, with no lock held."""
+
+
+def _renew_lock() -> None:
+    global _ending  # noqa: PLW0603 - a thread that does not exist in the fork may have held the other one
+    _ending = threading.Lock()
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_renew_lock)

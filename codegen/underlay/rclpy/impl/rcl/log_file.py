@@ -26,6 +26,10 @@ class LogFile:
         # Reentrant, because a signal handler may log too.
         self._lock = _thread.RLock()
 
+    def renew_lock(self) -> None:
+        """Free the lock in a fork."""
+        self._lock = _thread.RLock()
+
     def write_line(self, text: str) -> None:
         """Append a line, whole even if several threads write. Where there can be no file, say so once."""
         with self._lock:

@@ -9,6 +9,7 @@ from pathlib import Path
 from rmw_local import report, timing
 
 from rclpy.impl import program
+from rclpy.impl.messages import cleaned_text
 
 from .console import Console, Line
 from .context import Context
@@ -57,6 +58,9 @@ class _Levels:
         self._effective: dict[str, int] = {}  # cache; any change empties it
         self._lock = threading.Lock()
 
+    def renew_lock(self) -> None:
+        self._lock = threading.Lock()
+
     def get(self, name: str) -> int:
         return self._set.get(name, 0) if name else self.default
 
@@ -90,6 +94,12 @@ class _Logging:
         self.levels = _Levels()
         self.console: Console | None = None
         self.file: LogFile | None = None
+
+    def renew_locks(self) -> None:
+        """Free the locks in a fork."""
+        self.levels.renew_lock()
+        if self.file is not None:
+            self.file.renew_lock()
 
 
 def _here() -> _Logging:
@@ -194,6 +204,7 @@ def rclpy_logging_rcutils_log(
                 "rclpy_logging_rcutils_log(): incompatible function arguments: "
                 f"name, message, function and file must be str, got {text!r}"
             )
+    name, message, function_name, file_name = map(cleaned_text, (name, message, function_name, file_name))
     here = _here()
     if severity < here.levels.effective(name):
         return

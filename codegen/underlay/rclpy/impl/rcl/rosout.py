@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rmw_local.qos import RELIABLE, TRANSIENT_LOCAL, QosProfile
 
 from rclpy.impl import program
+from rclpy.impl.messages import cleaned_text
 
 if TYPE_CHECKING:
     from rmw_local.writer import Writer
@@ -30,6 +32,19 @@ class _Registry:
         self.writers: dict[str, Writer] = {}
         self.children: dict[str, int] = {}
 
+    def renew_locks(self) -> None:
+        """Free the lock in a fork, where the nodes of the forked process publish nothing."""
+        self.lock = threading.RLock()
+        self.writers.clear()
+        self.children.clear()
+
+    def remove(self, writer: Writer) -> None:
+        """Forget all loggers that publish through a writer."""
+        with self.lock:
+            for logger in [known for known, its in list(self.writers.items()) if its is writer]:
+                del self.writers[logger]
+                self.children.pop(logger, None)
+
 
 def _here() -> _Registry:
     here = program.current()
@@ -48,30 +63,28 @@ def rosout_connect(node: Node) -> Callable[[], None] | None:
     from rmw_local.message import message_type
 
     registry, name, graph_node = _here(), node.logger_name(), node.graph_node
-    if name in registry.writers:
+    writer = registry.writers.get(name)
+    if writer is not None and writer.node.participant.has_ended:  # its node only waits to be collected
+        registry.remove(writer)
+        writer = None
+    if writer is not None:
         _warn_of_twins(name)
     else:
         writer = graph_node.create_writer(message_type(Log), ROSOUT_TOPIC, _QOS)
         with registry.lock:
             registry.writers[name] = writer
-    return lambda: _disconnect(registry, name)
+    return partial(_disconnect, registry, writer)
 
 
-def _disconnect(registry: _Registry, name: str) -> None:
+def _disconnect(registry: _Registry, writer: Writer) -> None:
     """End a node's logger. A twin of that name ends it for both, as the warning says."""
-    with registry.lock:
-        writer = registry.writers.get(name)
-        if writer is None:
-            return
-        for logger in [known for known, its in list(registry.writers.items()) if its is writer]:
-            del registry.writers[logger]
-            registry.children.pop(logger, None)
+    registry.remove(writer)
     writer.node.close_writer(writer)
 
 
 def rclpy_logging_rosout_add_sublogger(logger_name: str, sublogger_name: str) -> bool:
     """Let a child of a node's logger publish too; False if the parent does not."""
-    registry, full_name = _here(), f"{logger_name}.{sublogger_name}"
+    registry, full_name = _here(), cleaned_text(f"{logger_name}.{sublogger_name}")
     with registry.lock:
         writer = registry.writers.get(logger_name)
         if writer is None:
@@ -85,7 +98,7 @@ def rclpy_logging_rosout_add_sublogger(logger_name: str, sublogger_name: str) ->
 
 def rclpy_logging_rosout_remove_sublogger(logger_name: str, sublogger_name: str) -> None:
     """Take back one `rclpy_logging_rosout_add_sublogger`."""
-    registry, full_name = _here(), f"{logger_name}.{sublogger_name}"
+    registry, full_name = _here(), cleaned_text(f"{logger_name}.{sublogger_name}")
     with registry.lock:
         users = registry.children.get(full_name, 0)
         if users > 1:

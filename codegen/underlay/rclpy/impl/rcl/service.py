@@ -69,6 +69,10 @@ class Service(SourceHandle, EndpointHandle):
                 RESPONSE_SENT, header.writer_guid, header.sequence_number, response=pyresponse
             )
 
+    def fail(self, header: rmw_request_id_t, reason: str) -> None:
+        """Let the client know that there will be no response; nothing happens if it has one, or is gone."""
+        self._server.fail(header.writer_guid, header.sequence_number, reason)
+
     def configure_introspection(
         self,
         clock: Clock,
