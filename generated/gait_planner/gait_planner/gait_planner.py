@@ -51,16 +51,14 @@ class GaitPlanner(GaitPlannerBase):
         self._asked = FootstepPlan()  # the last plan with steps
         self._walking = False  # whether the robot walks it
         self._lease: tuple[str, int] | None = None  # whose next message is expected, and until when [ns]
-        self._health = Health("gait_planner: commands", self.get_logger(), "plans", "velocities")
+        self._health = Health("gait_planner: commands", self.get_logger(), "plans", "velocities", "readings")
 
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
         """Walk a plan, or stop if it has no steps."""
-        self._lease = None
-        try:
-            plan = messages.read_footstep_plan(message)
-        except ValueError as error:
-            self._health.takes("plans", f"/footsteps/plan: {error}")
+        plan = self._health.read("plans", "/footsteps/plan", messages.read_footstep_plan, message)
+        if plan is None:
             return
+        self._lease = None
         if not plan.steps:
             self._stop()
         elif message != self._asked:
@@ -81,7 +79,9 @@ class GaitPlanner(GaitPlannerBase):
 
     def on_gait_state(self, message: GaitState) -> None:
         """Decide what to do next, each time that the controller reports its state."""
-        state = messages.read_gait_state(message)
+        state = self._health.read("readings", "/gait_state", messages.read_gait_state, message)
+        if state is None:
+            return
         plan = self._planner.update(state)
         walked = self._walking and state.footstep_index > self._asked.steps[-1].index
         if walked or state.mode in _HALTED:

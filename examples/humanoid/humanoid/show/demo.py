@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import math
-import secrets
 import signal
 import subprocess
 import sys
@@ -39,7 +38,6 @@ from .window import Window, WindowError, display
 _LIMIT = 600.0  # s of real time for a scenario
 _TURN = 0.1  # s of real time between checks of windows and processes
 _DISCOVERY = 0.7  # s that DDS has to find another robot
-_TOKEN = 18  # bytes of the page's token
 _INTERRUPTED = "interrupted"
 _CODE_INTERRUPTED = 130  # as for all commands of ifgen
 _CODE_TERMINATED = 143
@@ -72,7 +70,7 @@ class Options:
     transport: str = "local"
     record: Path | None = None
     web: int | None = None  # the port; 0: any free one
-    host: str = ""  # another address than this machine's own; who has the page's token may come
+    host: str = ""  # another address than this machine's own
     window: bool = False  # if there is a display
     realtime: bool = False
     seed: int = 0
@@ -282,7 +280,13 @@ class _Show:
         real = time.monotonic() - (self._started or time.monotonic())
         rows = report.summary(self._name, outcome, simulated, max(real, 1e-3), director.score)
         if director.is_over and self._options.transport == "local":
-            rows["state hash"] = director.state_hash[:16]
+            repeats = director.repeats and not self._without
+            rows["state hash"] = (
+                director.state_hash[:16]
+                if repeats
+                else "not reproducible: "
+                + ("nodes outside this process" if director.repeats else "time went on without set-points")
+            )
         report.show(rows)
 
     def _parameters(self) -> dict[str, dict[str, Any]]:
@@ -312,9 +316,8 @@ def _serve(options: Options, audience: Audience) -> Node:
     from .web.view_node import WebView
 
     host, port = options.host or LOOPBACK, options.web or 0
-    token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port, host, token, audience, "" if options.idle else options.scenario)
+        view = WebView(port, host, audience, "" if options.idle else options.scenario)
     except OSError as error:
         sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)

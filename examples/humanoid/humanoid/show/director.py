@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState, ObstacleTouch, Stance, TaskStatus
 from nav_msgs.msg import Odometry
@@ -21,6 +23,7 @@ from ..data import SECOND, Footstep, Mode
 from ..planning.tasks import task_of
 from ..robot.obstacles import Solid
 from ..ros import messages
+from ..ros.diagnostics import UNANSWERED
 from ..ros.markers import read_obstacle_markers
 from ..spatial import Array
 from .audience import PUSH_TIME
@@ -90,12 +93,14 @@ class Director(Node):
         self._index: int | None = None
         self._end = math.inf
         self._digest = hashlib.sha256()
+        self._unanswered = 0  # steps of the simulator
         topics: tuple[tuple[type[Any], str, QoSProfile | int, Callable[[Any], None]], ...] = (
             (TaskStatus, "/high_level_task_manager/task", _TASKS, self._on_task),
             (GaitState, "/gait_state", _LATCHED, self._on_gait),
             (FootstepPlan, "/footsteps/upcoming", _LATCHED, self._on_plan),
             (EmergencyStop, "/emergency_stop", _LATCHED, self._on_stop),
             (WrenchStamped, "/humanoid_simulator/push", 10, self._on_push),
+            (DiagnosticArray, "/diagnostics", 10, self._on_diagnostics),
             (MarkerArray, "/humanoid_simulator/obstacles", _LATCHED, self._on_obstacles),
             (ObstacleTouch, "/humanoid_simulator/touches", 10, self._on_touch),
             (Stance, "/humanoid_simulator/ground_truth/stance", _LATEST, self._on_truth),
@@ -109,6 +114,11 @@ class Director(Node):
     def state_hash(self) -> str:
         """SHA-256 over the true poses of the robot at every moment: equal runs have equal hashes."""
         return self._digest.hexdigest()
+
+    @property
+    def repeats(self) -> bool:
+        """Whether another run with the same seed is the same: time has always waited for set-points."""
+        return not self._unanswered
 
     @property
     def now(self) -> float:
@@ -185,6 +195,11 @@ class Director(Node):
         degrees = math.degrees(math.atan2(y, x)) % 360
         self._say(f"pushed with {math.hypot(x, y):g} N s towards {degrees:.0f} deg")
 
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        for value in (value for status in message.status for value in status.values):
+            if value.key == UNANSWERED and value.value.isdecimal():
+                self._unanswered = int(value.value)
+
     def _on_obstacles(self, message: MarkerArray) -> None:
         solids = {solid.name: solid for solid in read_obstacle_markers(message)}
         for name, solid in solids.items():
@@ -202,12 +217,16 @@ class Director(Node):
         self._is_stopped = message.active
 
     def _on_gait(self, message: GaitState) -> None:
-        self.mode = Mode(message.mode)
+        try:
+            state = messages.read_gait_state(message)
+        except ValueError:
+            return  # whoever acts on it says so
+        self.mode = state.mode
         fallen = self.mode is Mode.FALLEN or self._lies()
         if fallen and not self.fallen:
             self.score.falls += 1
             self._say("fallen")
-        before, self._index = self._index, int(message.footstep_index)
+        before, self._index = self._index, state.footstep_index
         self.fallen = fallen
         if before is not None and self._index == before + 1:
             self._landed(before)
@@ -231,10 +250,14 @@ class Director(Node):
         return self._base is not None and bool(self._base[2] < _LYING * self._height)
 
     def _on_plan(self, message: FootstepPlan) -> None:
-        self._planned.update((step.index, step) for step in messages.read_footstep_plan(message).steps)
+        with contextlib.suppress(ValueError):  # whoever would walk it says so
+            self._planned.update((step.index, step) for step in messages.read_footstep_plan(message).steps)
 
     def _on_truth(self, message: Stance) -> None:
-        self._truth = messages.read_stance(message).feet
+        try:
+            self._truth = messages.read_stance(message).feet
+        except ValueError:
+            return
         if self._middle is None:
             self._middle = self._middle_now()
 

@@ -145,6 +145,8 @@ class Commands:
         if not isinstance(words, str) or not 0 < len(words.strip()) <= _LONGEST:
             raise Refusal(f"say something, with at most {_LONGEST} characters")
         words = " ".join(words.split())
+        if not words.isprintable():
+            raise Refusal("say letters, not control characters")
         if words not in _SAID_TO_ROBOT:
             try:
                 task_of(words)

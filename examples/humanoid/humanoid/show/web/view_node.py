@@ -61,7 +61,6 @@ class WebView(Node):
         self,
         port: int = 0,
         host: str = LOOPBACK,
-        token: str = "",
         audience: Audience | None = None,
         scenario: str = "",
     ) -> None:
@@ -81,7 +80,7 @@ class WebView(Node):
         self._commands = Commands(self, self._why, audience, scenario)
         self._stream = self.create_client(SetParameters, "/camera_driver/set_parameters")
         self.create_timer(_PERIOD, self._turn, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self.page = PageServer(port, {"/camera.jpg": self._latest_picture}, self._ask, host, token)
+        self.page = PageServer(port, {"/camera.jpg": self._latest_picture}, self._ask, host)
         scenarios = sorted({*names(), *([Path(scenario).stem] if scenario else [])}) if audience else []
         self.page.show("setup", {"dances": list(DANCES), "scenarios": scenarios})
 
