@@ -73,7 +73,7 @@ def test_only_its_own_names_reach_it(page: server.PageServer) -> None:
         assert answer(page, f"GET /made HTTP/1.1\nHost: {host}\n\n").startswith("HTTP/1.0 403 "), host
         entrance = answer(page, f"GET /?token={page.token} HTTP/1.1\nHost: {host}\n\n")
         assert entrance.startswith("HTTP/1.0 403 "), host
-    twice = f"GET /made HTTP/1.1\nHost: localhost\nHost: evil.example\n\n"
+    twice = "GET /made HTTP/1.1\nHost: localhost\nHost: evil.example\n\n"
     assert answer(page, twice).startswith("HTTP/1.0 403 ")
 
 

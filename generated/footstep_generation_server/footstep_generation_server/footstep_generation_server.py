@@ -53,10 +53,16 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
                 response.message = f"there is no leg {request.first_leg}"
                 return response
             first_leg = data.Leg(request.first_leg)
-        x, y, yaw = (float(part) for part in messages.planar(request.goal.pose))
+        try:
+            start = messages.read_stance(request.start)
+            goal = messages.place_of(request.goal.pose)
+        except ValueError as error:
+            response.status = int(PlanStatus.INVALID_REQUEST)
+            response.message = f"the stance or the goal: {error}"[:255]
+            return response
         result = plan_footsteps(
-            messages.read_stance(request.start),
-            (x, y, yaw),
+            start,
+            goal,
             limits=self._limits(request),
             ground=replace(GROUND, half_size=self.parameters.distance_max),
             first_leg=first_leg,

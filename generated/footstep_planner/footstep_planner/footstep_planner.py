@@ -115,10 +115,12 @@ class FootstepPlanner(FootstepPlannerBase):
             response.status, response.message = int(PlanStatus.UNKNOWN), str(error)[:255]
             return
         if rest.status == int(PlanStatus.PLANNED):
-            steps += [
-                replace(step, index=index + number)
-                for number, step in enumerate(messages.read_footstep_plan(rest.plan).steps)
-            ]
+            try:
+                plan = messages.read_footstep_plan(rest.plan)
+            except ValueError as error:
+                response.status, response.message = int(PlanStatus.UNKNOWN), f"/plan_footsteps: {error}"
+                return
+            steps += [replace(step, index=index + number) for number, step in enumerate(plan.steps)]
         elif not (rest.status == int(PlanStatus.ALREADY_THERE) and steps):
             response.status, response.message = rest.status, rest.message
             return
@@ -140,9 +142,8 @@ class FootstepPlanner(FootstepPlannerBase):
                 raise ValueError(f"the {what} is in '{frame}'; I plan in odom")
         if request.first_leg not in (0, data.Leg.LEFT, data.Leg.RIGHT):
             raise ValueError(f"there is no leg {request.first_leg}")
-        stance = messages.read_stance(request.start)
-        if not all(np.isfinite(foot).all() for foot in stance.feet):
-            raise ValueError("the stance holds a number that is not finite")
+        messages.check_count("first_index", request.first_index)
+        messages.read_stance(request.start)
         if not 0 <= request.max_step_length < np.inf:
             raise ValueError(
                 f"max_step_length is {request.max_step_length:g} m; it must be finite, 0 or more"

@@ -277,7 +277,10 @@ class _Ways:
             return PlanResult(PlanStatus.UNKNOWN, str(error), nothing)
         known = steps.status in list(PlanStatus)
         status = PlanStatus(steps.status) if known else PlanStatus.UNKNOWN
-        return PlanResult(status, str(steps.message), messages.read_footstep_plan(steps.plan))
+        try:
+            return PlanResult(status, str(steps.message), messages.read_footstep_plan(steps.plan))
+        except ValueError as error:
+            return PlanResult(PlanStatus.UNKNOWN, f"/follow_path: {error}", nothing)
 
 
 class _Walk:

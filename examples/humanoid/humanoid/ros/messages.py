@@ -280,10 +280,10 @@ def read_footstep_plan(message: FootstepPlanMessage) -> FootstepPlan:
             raise ValueError(f"step {number} names no leg")
         if not (abs(x) <= _FAR and abs(y) <= _FAR and math.isfinite(yaw)):
             raise ValueError(f"step {number} {_beyond(x, y, yaw)}")
-        _check_count(f"the index of step {number}", step.index)
+        check_count(f"the index of step {number}", step.index)
         time = nanoseconds(step.step_time) / SECOND
         steps.append(Footstep(int(step.index), Leg(step.leg), x, y, yaw, time or STEP_TIME))
-    _check_count("plan_id", message.plan_id)
+    check_count("plan_id", message.plan_id)
     x, y, yaw = (float(part) for part in planar(message.goal))
     return FootstepPlan(int(message.plan_id), tuple(steps), (x, y, yaw), nanoseconds(message.header.stamp))
 
@@ -322,8 +322,8 @@ def gait_state(state: GaitState) -> GaitStateMessage:
 
 def read_gait_state(message: GaitStateMessage) -> GaitState:
     """From /gait_state. Raises ValueError for values that no controller reports."""
-    _check_count("plan_id", message.plan_id)
-    _check_count("footstep_index", message.footstep_index)
+    check_count("plan_id", message.plan_id)
+    check_count("footstep_index", message.footstep_index)
     return GaitState(
         nanoseconds(message.header.stamp),
         _known(Mode, message.mode),
@@ -393,7 +393,7 @@ def read_battery_state(message: BatteryState) -> BatteryReading:
     return BatteryReading(stamp, message.voltage, message.current, message.percentage, message.temperature)
 
 
-def _check_count(name: str, value: int) -> None:
+def check_count(name: str, value: int) -> None:
     """Raise ValueError for a number that nobody has counted to: the next one would not fit into a field."""
     if value >= _MANY:
         raise ValueError(f"{name} is {value}, which is not plausible")

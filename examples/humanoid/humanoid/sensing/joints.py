@@ -13,7 +13,8 @@ from ..spatial import Array
 class JointCollector:
     """Collects the values of joints; a round is over when every driver has reported since the last one.
 
-    `joints` are the names in the order that is wanted. A driver that has been silent for `stale_after` [ns] holds up no round.
+    `joints` are the names in the order that is wanted. A driver that has been silent for `stale_after` [ns]
+    holds up no round.
     """
 
     def __init__(self, joints: Sequence[str], stale_after: int = SECOND // 2) -> None:

@@ -25,6 +25,7 @@ from rclpy.signals import SignalHandlerOptions
 from ..data import Mode
 from ..robot.external import load_model
 from ..robot.joint_map import ModelError
+from ..ros.messages import printable
 from ..simulation.rendering import RenderingError, check
 from . import crew, parts, report
 from .audience import Audience, AudienceError
@@ -135,6 +136,7 @@ class _Show:
         self._executor: Executor = SingleThreadedExecutor()
         overrides = [Parameter(k, value=v) for k, v in self._scenario.get("audience", {}).items()]
         audience = Audience(parameter_overrides=[Parameter("use_sim_time", value=True), *overrides])
+        self._audience = audience
         self._director = Director(self._say, lambda: audience.is_over)
         self._recorder = self._record_to(options.record) if options.record else None
         self._window = self._open_window() if options.window and display() else None
@@ -215,8 +217,8 @@ class _Show:
         end = time.monotonic() + (math.inf if self._options.idle else _LIMIT)
         while time.monotonic() < end:
             self._executor.spin_once(timeout_sec=_TURN)
-            if self._started is None and self._director.begun is not None:
-                self._started = time.monotonic()
+            if (self._started is None) is not (self._director.begun is None):
+                self._started = None if self._director.begun is None else time.monotonic()
             self._line.show(self._director, self._started or time.monotonic())
             for process in self._processes:
                 if process.poll() is not None:
@@ -253,10 +255,11 @@ class _Show:
 
     def _say(self, what: str) -> None:
         self._line.clear()
-        print(f"{self._director.now:7.2f} s  {what}", flush=True)
+        print(f"{self._director.now:7.2f} s  {printable(what)}", flush=True)
 
     def _stay(self) -> None:
-        print("the page stays open: Ctrl-C ends")
+        print("the page stays open: Ctrl-C ends", flush=True)
+        self._audience.let_go()
         with contextlib.suppress(KeyboardInterrupt):
             while True:
                 self._executor.spin_once(timeout_sec=_TURN)
@@ -277,8 +280,8 @@ class _Show:
     def _summary(self, outcome: str) -> None:
         director = self._director
         simulated = director.now - (director.begun or 0.0)
-        real = time.monotonic() - (self._started or time.monotonic())
-        rows = report.summary(self._name, outcome, simulated, max(real, 1e-3), director.score)
+        real = 0.0 if self._started is None else time.monotonic() - self._started
+        rows = report.summary(self._name, outcome, simulated, real, director.score)
         if director.is_over and self._options.transport == "local":
             repeats = director.repeats and not self._without
             rows["state hash"] = (

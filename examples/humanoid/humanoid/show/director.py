@@ -45,6 +45,7 @@ class Score:
 
     steps: int = 0
     distance: float = 0.0  # of the middle between the soles, from step to step
+    walking: float = 0.0  # in mode WALKING
     falls: int = 0
     foot_errors: list[float] = field(default_factory=list)
     goal_errors: list[float] = field(default_factory=list)
@@ -54,6 +55,11 @@ class Score:
     touches: int = 0  # of obstacles by links of the robot
     stop_times: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)  # tasks that failed though nobody stopped the robot
+
+    @property
+    def speed(self) -> float:
+        """The mean speed of walks [m/s]."""
+        return self.distance / self.walking if self.walking else 0.0
 
     @property
     def foot_error(self) -> float:
@@ -94,6 +100,8 @@ class Director(Node):
         self._end = math.inf
         self._digest = hashlib.sha256()
         self._unanswered = 0  # steps of the simulator
+        self._seen_at: int | None = None  # stamp of the last gait state
+        self._true_at = 0  # stamp of the last true pose
         topics: tuple[tuple[type[Any], str, QoSProfile | int, Callable[[Any], None]], ...] = (
             (TaskStatus, "/high_level_task_manager/task", _TASKS, self._on_task),
             (GaitState, "/gait_state", _LATCHED, self._on_gait),
@@ -134,6 +142,16 @@ class Director(Node):
         """True distance of the middle between the soles from a point [m]; infinite if not published."""
         middle = self._middle_now()
         return math.inf if middle is None else math.hypot(middle[0] - x, middle[1] - y)
+
+    def _begin_anew(self) -> None:
+        """Forget the run before: the simulator has started again."""
+        self.score = Score(obstacles=self.score.obstacles)
+        self.begun, self._end = None, math.inf
+        self._planned.clear()
+        self._middle = self._index = self._seen_at = self._base = None
+        self._height = 0.0
+        self._digest = hashlib.sha256()
+        self._say("time starts again")
 
     def _look(self) -> None:
         """Note the end: the last task is done, and nobody has plans. A robot that lies has no future."""
@@ -221,11 +239,13 @@ class Director(Node):
             state = messages.read_gait_state(message)
         except ValueError:
             return  # whoever acts on it says so
-        self.mode = state.mode
+        if self.mode is Mode.WALKING and self._seen_at is not None:
+            self.score.walking += max(state.stamp - self._seen_at, 0) / SECOND
+        self.mode, self._seen_at = state.mode, state.stamp
         fallen = self.mode is Mode.FALLEN or self._lies()
         if fallen and not self.fallen:
             self.score.falls += 1
-            self._say("fallen")
+            self._say("fallen: /humanoid_simulator/reset, or Restart on the page, stands it up")
         before, self._index = self._index, state.footstep_index
         self.fallen = fallen
         if before is not None and self._index == before + 1:
@@ -262,7 +282,11 @@ class Director(Node):
             self._middle = self._middle_now()
 
     def _on_odometry(self, message: Odometry) -> None:
-        if messages.nanoseconds(message.header.stamp) / SECOND <= self._end:
+        stamp = messages.nanoseconds(message.header.stamp)
+        if stamp < self._true_at:
+            self._begin_anew()
+        self._true_at = stamp
+        if stamp / SECOND <= self._end:
             self._digest.update(serialize_message(message))
         self._base = messages.numbers(message.pose.pose.position)
         self._height = max(self._height, float(self._base[2]))

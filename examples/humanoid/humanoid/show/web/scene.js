@@ -287,6 +287,28 @@ export class Scene {
     this.changed = true;
   }
 
+  // The board with the face, which stands in the scene from the beginning; it faces against x.
+  stand({ at, half, face, eye, mouth }) {
+    if (this.board) return;
+    this.board = new THREE.Group();
+    const add = (geometry, color, x, y, z) => {
+      const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ color }));
+      mesh.position.set(x, y, z);
+      mesh.castShadow = true;
+      this.board.add(mesh);
+    };
+    const [dark, light] = [0x0b0b0d, 0xf2f2eb];
+    const disc = (radius) => new THREE.CylinderGeometry(radius, radius, 0.004, 32).rotateZ(Math.PI / 2);
+    add(new THREE.BoxGeometry(0.02, 2 * half, 2 * half), dark, 0.012, 0, at[2]);
+    add(new THREE.CylinderGeometry(0.02, 0.02, at[2], 16).rotateX(Math.PI / 2), dark, 0.05, 0, at[2] / 2);
+    add(disc(face), light, -0.002, 0, at[2]);
+    for (const side of [-1, 1]) add(disc(eye[0]), dark, -0.004, side * eye[1], at[2] + eye[2]);
+    add(new THREE.BoxGeometry(0.004, 2 * mouth[0], 2 * mouth[1]), dark, -0.004, 0, at[2] + mouth[2]);
+    this.board.position.set(at[0], at[1], 0);
+    this.scene.add(this.board);
+    this.changed = true;
+  }
+
   // Nothing is drawn while nothing changes.
   render() {
     this.controls.update();

@@ -115,7 +115,10 @@ class PageServer:
 
     @property
     def hosts(self) -> tuple[str, ...] | None:
-        """What a Host header may be; browsers leave port 80 out. None if this machine has names that we do not know."""
+        """What a Host header may be; None if this machine has names that we do not know.
+
+        Browsers leave port 80 out.
+        """
         if self._host != LOOPBACK:
             return None
         return tuple(f"{name}{port}" for name in (LOOPBACK, "localhost") for port in ("", f":{self.port}"))
