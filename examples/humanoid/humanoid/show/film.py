@@ -147,7 +147,8 @@ def _eye(camera: Any) -> Array:
     """Where a camera is (3,)."""
     turn, lift = math.radians(camera.azimuth), math.radians(camera.elevation)
     way = np.array([math.cos(lift) * math.cos(turn), math.cos(lift) * math.sin(turn), math.sin(lift)])
-    return np.asarray(camera.lookat) - camera.distance * way
+    eye: Array = np.asarray(camera.lookat) - camera.distance * way
+    return eye
 
 
 def _hides(eye: Array, seen: Array, place: Sequence[float], radius: float) -> bool:

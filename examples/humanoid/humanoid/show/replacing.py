@@ -48,10 +48,8 @@ def node_class(place: str) -> type[Any]:
         raise ReplacementError(f"{where}: expected one class that derives from rclpy's Node; {found}")
     (found_class,) = own.values()
     if missing := sorted(getattr(found_class, "__abstractmethods__", ())):
-        raise ReplacementError(
-            f"{where}: {found_class.__name__} lacks {', '.join(missing)}: define each of them, even if it does "
-            "nothing"
-        )
+        lacks = f"{where}: {found_class.__name__} lacks {', '.join(missing)}"
+        raise ReplacementError(f"{lacks}: define each of them, even if it does nothing")
     return found_class
 
 

@@ -51,8 +51,13 @@ class Reading:
 
 
 def rounded(*values: float) -> list[float]:
-    """Round to a tenth of a millimetre; JSON has no value for numbers that are not finite."""
-    return [round(value, 4) if math.isfinite(value) else 0.0 for value in values]
+    """Round to a tenth of a millimetre."""
+    return [_number(value, 4) for value in values]
+
+
+def _number(value: float, digits: int) -> float:
+    """A rounded number; JSON has no value for those that are not finite."""
+    return round(value, digits) if math.isfinite(value) else 0.0
 
 
 def yaw_of(q: Any) -> float:
@@ -101,7 +106,7 @@ def _balance(message: BalanceState) -> dict[str, Any]:
 
 def _battery(message: BatteryStatus) -> dict[str, Any]:
     level = _constant(BatteryStatus, "LEVEL_", message.level)
-    return {"charge": round(*rounded(message.charge), 2), "level": level}
+    return {"charge": _number(message.charge, 2), "level": level}
 
 
 def _stop(message: EmergencyStop) -> dict[str, Any]:
@@ -122,7 +127,7 @@ def _walked(message: Any) -> dict[str, Any]:
     feedback = message.feedback
     return {
         "goal": _id(message.goal_id),
-        "left": round(*rounded(feedback.distance_left), 2),
+        "left": _number(feedback.distance_left, 2),
         "taken": feedback.steps_taken,
         "steps": feedback.steps_taken + feedback.steps_left,
         "replanning": feedback.replanning,
@@ -130,7 +135,7 @@ def _walked(message: Any) -> dict[str, Any]:
 
 
 def _danced(message: Any) -> dict[str, Any]:
-    progress = round(*rounded(message.feedback.progress), 3)
+    progress = _number(message.feedback.progress, 3)
     return {"goal": _id(message.goal_id), "progress": progress, "beat": message.feedback.beat}
 
 
@@ -159,7 +164,7 @@ def _map(message: OccupancyGrid) -> dict[str, Any] | None:
     return {
         "width": info.width,
         "height": info.height,
-        "cell": rounded(info.resolution)[0],
+        "cell": _number(info.resolution, 4),
         "origin": rounded(info.origin.position.x, info.origin.position.y),
         "occupied": occupied.tolist(),
     }
@@ -171,7 +176,7 @@ def _obstacles(message: MarkerArray) -> list[dict[str, Any]]:
             "name": marker.ns,
             "shape": _SHAPES[marker.type],
             "at": rounded(marker.pose.position.x, marker.pose.position.y, marker.pose.position.z),
-            "yaw": rounded(yaw_of(marker.pose.orientation))[0],
+            "yaw": _number(yaw_of(marker.pose.orientation), 4),
             "size": rounded(marker.scale.x, marker.scale.y, marker.scale.z),
             "color": rounded(marker.color.r, marker.color.g, marker.color.b),
         }

@@ -35,6 +35,7 @@ function chequers() {
 
 const flat = (color, opacity = 1) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
 
+const BROAD = 0.7; // m beside the line of sight within which the board hides the robot
 const HIDING = 10; // obstacles are drawn after the marks that they hide
 
 // Draw something over the robot's feet, later things over earlier ones.
@@ -309,11 +310,28 @@ export class Scene {
     this.changed = true;
   }
 
+  // The board is like glass while it stands between the camera and the robot.
+  clear() {
+    if (!this.board || !this.base) return;
+    const eye = new THREE.Vector2(this.camera.position.x, this.camera.position.y);
+    const way = new THREE.Vector2(this.base[0], this.base[1]).sub(eye);
+    const there = new THREE.Vector2(this.board.position.x, this.board.position.y).sub(eye);
+    const share = there.dot(way) / Math.max(way.lengthSq(), 1e-6);
+    const beside = there.sub(way.clone().multiplyScalar(share)).length();
+    const hides = share > -0.2 && share < 0.9 && beside < BROAD + (1 - share) * BROAD;
+    for (const { material } of this.board.children) {
+      material.opacity = hides ? 0.15 : 1;
+      material.transparent = hides;
+      material.depthWrite = !hides;
+    }
+  }
+
   // Nothing is drawn while nothing changes.
   render() {
     this.controls.update();
     if (!this.changed) return;
     this.changed = false;
+    this.clear();
     this.renderer.render(this.scene, this.camera);
     this.ease(performance.now());
   }
