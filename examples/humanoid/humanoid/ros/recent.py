@@ -12,7 +12,7 @@ from ..data import SECOND
 Reading = TypeVar("Reading")
 
 _KEPT = 4
-_LATE = 20_000_000  # ns by which a reading is merely late
+_LATE = 20_000_000  # ns by which the reading of one topic is merely late
 _FAR_AHEAD = 1_000_000_000  # ns: sensors are never silent for so long
 
 
@@ -31,7 +31,7 @@ class Recent(Generic[Reading]):
         """
         ahead = stamp - self.newest
         if ahead < 0 or (ahead > _FAR_AHEAD and self.newest >= 0):
-            self._leap = (stamp, reading) if ahead < -_LATE or ahead > 0 else None
+            self._leap = stamp, reading
             return False
         self._leap = None
         self.newest = stamp
@@ -39,11 +39,6 @@ class Recent(Generic[Reading]):
         if len(self._readings) > _KEPT:
             del self._readings[next(iter(self._readings))]
         return True
-
-    @property
-    def leaps(self) -> bool:
-        """Whether time would have leapt with the last reading."""
-        return self._leap is not None
 
     @property
     def last(self) -> int:
@@ -108,9 +103,11 @@ def leapt(*topics: Recent[Any]) -> bool:
     """
     if len({topic.last for topic in topics}) > 1:
         return False
-    back = all(topic.last < topic.newest for topic in topics)
-    for topic in topics:
-        topic.leap()
+    distances = [topic.last - topic.newest for topic in topics]
+    back = all(distance < 0 for distance in distances)
+    if back or all(abs(distance) > _LATE for distance in distances if distance):
+        for topic in topics:
+            topic.leap()
     return back
 
 
