@@ -17,7 +17,7 @@ const channels = {
     scene.stand(value.board);
   },
   time: (value) => panel.text("time", `${value.toFixed(1)} s`),
-  factor: (value) => panel.text("factor", `${value.toFixed(2)}×`),
+  factor: (value) => panel.text("factor", value === null ? "paused" : `${value.toFixed(2)}×`),
   battery: ({ charge, level }) => panel.text("battery", `${Math.round(charge * 100)} %${level === "normal" ? "" : ` ${level}`}`),
   gait: (value) => {
     panel.gait(value);

@@ -192,7 +192,7 @@ class WebView(Node):
         if self._simulated is not None:
             self._rates.count(now, self._simulated, counts)
         if (factor := self._rates.factor) is not None:
-            self.page.show("factor", round(factor, 2))
+            self.page.show("factor", None if self._commands.paused else round(factor, 2))
         graph = of_running(self)
         self.page.show("graph", _drawing(graph))
         kinds = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
