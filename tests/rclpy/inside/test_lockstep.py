@@ -20,7 +20,6 @@ from rmw_local.virtual_time import virtual_time
 
 from tests.rclpy.inside import lockstep_programs as programs
 
-
 pytestmark = pytest.mark.slow  # each starts processes
 
 
