@@ -55,14 +55,14 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
             first_leg = data.Leg(request.first_leg)
         try:
             start = messages.read_stance(request.start)
-            goal = messages.place_of(request.goal.pose)
         except ValueError as error:
             response.status = int(PlanStatus.INVALID_REQUEST)
-            response.message = f"the stance or the goal: {error}"[:255]
+            response.message = f"the stance: {error}"[:255]
             return response
+        x, y, yaw = messages.planar(request.goal.pose).tolist()
         result = plan_footsteps(
             start,
-            goal,
+            (x, y, yaw),
             limits=self._limits(request),
             ground=replace(GROUND, half_size=self.parameters.distance_max),
             first_leg=first_leg,
