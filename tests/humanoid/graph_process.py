@@ -9,7 +9,9 @@ import json
 import os
 import subprocess
 import sys
+import time
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,8 @@ def play(*trials: tuple[str, list[Any], dict[str, Any]], hash_seed: int = 0) -> 
     """Play trials in another process: functions of `humanoid.trials.graph_trials`, their arguments, the graph's options.
 
     Returns for each the result or the problem, the score and the state hash. With the option `processes`, the nodes
-    are in lockstep, in one process or in four.
+    are in lockstep, in one process or in four. With the option `stalls`, the process seems to be held up for long
+    again and again.
     """
     done = subprocess.run(
         [sys.executable, __file__, json.dumps(trials)],
@@ -46,6 +49,9 @@ def _play(trial: str, arguments: list[Any], options: dict[str, Any]) -> dict[str
     from humanoid.trials.graph import NodeGraph
     from humanoid.trials.user import ScenarioError
 
+    if options.pop("stalls", False):
+        module = import_module("humanoid_simulator.humanoid_simulator")
+        module.time = _Stalled()  # type: ignore[attr-defined]
     if "processes" in options:
         played, problem, score = spread.play(trial, arguments, **options)
     else:
@@ -58,6 +64,19 @@ def _play(trial: str, arguments: list[Any], options: dict[str, Any]) -> dict[str
             score = graph.user.score
     found = {"result": played.result, "hash": played.state_hash} if played else {}
     return {**found, "problem": problem, **asdict(score), "foot_error": score.foot_error}
+
+
+class _Stalled:
+    """The clock of a process that gets no processor time for 100 s between any two looks at it."""
+
+    sleep = staticmethod(time.sleep)
+
+    def __init__(self) -> None:
+        self._now = 0.0
+
+    def monotonic(self) -> float:
+        self._now += 100.0
+        return self._now
 
 
 if __name__ == "__main__":

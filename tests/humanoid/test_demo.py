@@ -166,6 +166,11 @@ for words in json.load(sys.stdin):
 def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
     broken = tmp_path / "broken.xml"
     broken.write_text(write_mjcf().replace("l_knee", "l_kneee"))
+    lazy, wrong = tmp_path / "lazy.py", tmp_path / "wrong.py"
+    lazy.write_text(
+        "from gait_planner._gait_planner_base import GaitPlannerBase\n\n\nclass Lazy(GaitPlannerBase): ...\n"
+    )
+    wrong.write_text("x = 1\nx +\n")
     mistakes = (
         (["--model", str(broken)], "no joint 'l_knee'"),
         (["--record", "x.avi"], "ends in .gif, .mp4 or .png"),
@@ -183,6 +188,11 @@ def test_mistakes_are_one_sentence(tmp_path: Path) -> None:
         (["--replace", "gait_planner"], "write NODE=FILE_OR_MODULE, such as gait_planner=mine.py"),
         (["--replace", "gait_planner=nobody.py"], "there is no file nobody.py"),
         (["--replace", "gait_planner=no_module"], "the module no_module cannot be imported"),
+        (
+            ["--replace", f"gait_planner={lazy}"],
+            "lazy.py: Lazy lacks handle_clear, on_diagnostics_timer, on_footsteps_",
+        ),
+        (["--replace", f"gait_planner={wrong}"], "wrong.py, line 2: SyntaxError: "),
         (["--replace", "gait_planner=json"], "json: expected one class that derives from rclpy's Node"),
     )
     done = subprocess.run(

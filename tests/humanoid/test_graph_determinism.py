@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import Any
 
 import pytest
@@ -28,8 +30,21 @@ def test_a_graph_built_again_runs_the_same() -> None:
     assert first == again != other
 
 
-def test_another_process_runs_the_same() -> None:
-    assert _hashes({"seed": 1}, hash_seed=77) == _hashes({"seed": 1})
+def test_another_process_runs_the_same_however_long_it_is_held_up() -> None:
+    assert _hashes({"seed": 1, "stalls": True}, hash_seed=77) == _hashes({"seed": 1})
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_a_busy_machine_changes_nothing() -> None:
+    busy = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(4)]
+    try:
+        first, again = _hashes({"seed": 1}, {"seed": 1})
+    finally:
+        for process in busy:
+            process.kill()
+            process.wait()
+    assert first == again == _hashes({"seed": 1})[0]
 
 
 @pytest.mark.slow

@@ -24,6 +24,7 @@ ifgen.activate("rclpy")
 runpy.run_path("tests/humanoid/graph/killing.py", run_name="__main__")
 """
 FILES = sorted((HERE / "graph").glob("test_*.py"))
+FAST = {"test_garbage"}
 
 
 def run_inside(file: Path, folder: Path, *, slow: bool, limit: float) -> None:
@@ -45,9 +46,12 @@ def run_inside(file: Path, folder: Path, *, slow: bool, limit: float) -> None:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.timeout(220)
-@pytest.mark.parametrize("file", FILES, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "file",
+    [pytest.param(path, marks=[] if path.stem in FAST else pytest.mark.slow) for path in FILES],
+    ids=[path.stem for path in FILES],
+)
 def test_faults(file: Path, tmp_path: Path) -> None:
     """Every test in the file passes."""
     run_inside(file, tmp_path, slow=False, limit=200)

@@ -34,7 +34,7 @@ def url() -> Iterator[str]:
     assert process.stdout is not None
     try:
         for line in process.stdout:
-            if found := re.search(r"http://127\.0\.0\.1:\d+/", line):
+            if found := re.search(r"http://127\.0\.0\.1:\d+/\S+", line):
                 yield found[0]
                 break
     finally:

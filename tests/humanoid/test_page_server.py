@@ -43,11 +43,18 @@ def connected(page: server.PageServer) -> socket.socket:
     return socket.create_connection(("127.0.0.1", page.port), timeout=20)
 
 
-def answer(page: server.PageServer, request: str) -> str:
-    """Everything that arrives until the server closes the connection."""
+def answer(page: server.PageServer, request: str, token: str | None = None) -> str:
+    """Everything that arrives until the server closes the connection, for a browser that has the token."""
+    cookie = f"Cookie: humanoid_{page.port}={page.token if token is None else token}"
+    head, empty, body = request.partition("\n\n")
     with connected(page) as client:
-        client.sendall(request.replace("\n", "\r\n").encode())
+        client.sendall(f"{head}\n{cookie}{empty}{body}".replace("\n", "\r\n").encode())
         return b"".join(iter(lambda: client.recv(2**16), b"")).decode()
+
+
+def request(page: server.PageServer, path: str) -> bytes:
+    cookie = f"humanoid_{page.port}={page.token}"
+    return f"GET {path} HTTP/1.1\r\nHost: localhost\r\nCookie: {cookie}\r\n\r\n".encode()
 
 
 def wait_for_threads(before: list[threading.Thread]) -> None:
@@ -57,18 +64,46 @@ def wait_for_threads(before: list[threading.Thread]) -> None:
     assert set(threading.enumerate()) <= set(before)
 
 
-def test_port_80_is_not_named_by_browsers(page: server.PageServer) -> None:
-    for host in ("127.0.0.1", "localhost", f"127.0.0.1:{page.port}"):
+def test_only_its_own_names_reach_it(page: server.PageServer) -> None:
+    """Browsers do not name port 80."""
+    for host in ("127.0.0.1", "localhost", f"127.0.0.1:{page.port}", f"localhost:{page.port}"):
         assert answer(page, f"GET /made HTTP/1.1\nHost: {host}\n\n").endswith("\r\n\r\nmade")
-    for host in ("", "evil.example", "127.0.0.1.evil.example", f"evil.example:{page.port}", "[::1]:80"):
-        assert answer(page, f"GET /made HTTP/1.1\nHost: {host}\n\n").startswith("HTTP/1.0 403 ")
+    strange = ("", "evil.example", "127.0.0.1.evil.example", f"evil.example:{page.port}", "[::1]:80")
+    for host in (*strange, "127.0.0.1:80@evil.example", f"127.0.0.1:{page.port}@evil.example", "127.0.0.1:1"):
+        assert answer(page, f"GET /made HTTP/1.1\nHost: {host}\n\n").startswith("HTTP/1.0 403 "), host
+        entrance = answer(page, f"GET /?token={page.token} HTTP/1.1\nHost: {host}\n\n")
+        assert entrance.startswith("HTTP/1.0 403 "), host
+    twice = "GET /made HTTP/1.1\nHost: localhost\nHost: evil.example\n\n"
+    assert answer(page, twice).startswith("HTTP/1.0 403 ")
+
+
+@pytest.mark.parametrize("path", ["/", "/made", "/news", "/view.js"])
+@pytest.mark.parametrize(
+    "header",
+    [
+        "Origin: http://evil.example",
+        "Origin: null",
+        "Sec-Fetch-Site: cross-site",
+        "Sec-Fetch-Site: same-site",
+    ],
+)
+def test_other_sites_get_nothing(path: str, header: str, page: server.PageServer) -> None:
+    assert answer(page, f"GET {path} HTTP/1.1\nHost: localhost\n{header}\n\n").startswith("HTTP/1.0 403 ")
 
 
 @pytest.mark.parametrize("path", ["/", "/made", "/nothing"])
-def test_no_other_page_can_frame_it(page: server.PageServer, path: str) -> None:
+def test_no_other_page_can_frame_it_and_it_runs_no_other_scripts(page: server.PageServer, path: str) -> None:
     headers = answer(page, f"GET {path} HTTP/1.1\nHost: localhost\n\n").partition("\r\n\r\n")[0].split("\r\n")
     assert "X-Frame-Options: DENY" in headers
-    assert "Content-Security-Policy: frame-ancestors 'none'" in headers
+    assert "Cross-Origin-Resource-Policy: same-origin" in headers
+    (policy,) = (line for line in headers if line.startswith("Content-Security-Policy: "))
+    for part in (
+        "default-src 'none'; script-src 'self' 'sha256-",
+        "frame-ancestors 'none'",
+        "base-uri 'none'",
+    ):
+        assert part in policy
+    assert "unsafe" not in policy
 
 
 def command(host: str, *headers: str, body: str = '{"do": "stop"}') -> str:
@@ -114,38 +149,58 @@ def test_only_the_page_itself_commands(page: server.PageServer, asked: Asked) ->
         ("{}", "4097", 413),
         ("{}", "-1", 413),
         ("{}", "", 413),
+        ("{}", "9" * 5000, 413),
+        ("{}", "0" * 5000 + "2", 413),
+        ("{}", "²", 413),
     ],
 )
 def test_what_is_no_command(
-    body: str, length: str, status: int, page: server.PageServer, asked: Asked
+    body: str,
+    length: str,
+    status: int,
+    page: server.PageServer,
+    asked: Asked,
+    capfd: pytest.CaptureFixture[str],
 ) -> None:
     request = f"POST /command HTTP/1.1\nHost: localhost\nX-Humanoid: 1\nContent-Length: {length}\n\n{body}"
     assert answer(page, request).startswith(f"HTTP/1.0 {status} ")
     assert asked == []
+    assert capfd.readouterr().err == ""
 
 
-def test_for_other_machines_it_needs_its_token() -> None:
-    with pytest.raises(ValueError, match=r"a page on 0\.0\.0\.0 needs a token"):
-        server.PageServer(0, {}, lambda _: (True, ""), "0.0.0.0")
-    page = server.PageServer(0, {}, lambda _: (True, "done"), "0.0.0.0", "secret")
+def test_an_address_that_is_none_is_refused(
+    page: server.PageServer, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for target in ("http://[", "//[x", "/?token=%ff%00", "/%", "*"):
+        status = answer(page, f"GET {target} HTTP/1.1\nHost: localhost\n\n").split(" ")[1]
+        assert status in ("400", "404", "200"), target
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.parametrize("address", ["127.0.0.1", "0.0.0.0"])
+def test_nobody_gets_anything_without_the_token(address: str) -> None:
+    """Other users of this machine reach the port, too."""
+    page = server.PageServer(0, {}, lambda _: (True, "done"), address)
     try:
-        assert re.fullmatch(rf"http://[\w.-]+:{page.port}/\?token=secret", page.url)
+        assert len(page.token) > 20
+        assert re.fullmatch(rf"http://[\w.-]+:{page.port}/\?token={page.token}", page.url)
         assert "//0.0.0.0:" not in page.url  # which no other machine can open
-        host, name = f"robot.local:{page.port}", f"humanoid_{page.port}"
-        for line in ("", "Cookie: x=secret", f"Cookie: {name}=wrong", f"Cookie: {name}=", "Cookie: ;="):
+        name = f"humanoid_{page.port}"
+        host = f"127.0.0.1:{page.port}" if address == "127.0.0.1" else f"robot.local:{page.port}"
+        for token in ("", "wrong", ";=", "é"):
             for path in ("/", "/news", "/view.js", "/?token=wrong", "/?token="):
-                request = f"GET {path} HTTP/1.1\nHost: {host}\n{line}\n\n".replace("\n\n\n", "\n\n")
-                assert answer(page, request).startswith("HTTP/1.0 403 "), request
-        entrance = answer(page, f"GET /?token=secret HTTP/1.1\nHost: {host}\n\n")
+                request = f"GET {path} HTTP/1.1\nHost: {host}\n\n"
+                assert answer(page, request, token).startswith("HTTP/1.0 403 "), request
+        assert "403" in answer(page, command(host, "X-Humanoid: 1"), "wrong")
+        entrance = answer(page, f"GET /?token={page.token} HTTP/1.1\nHost: {host}\n\n", "")
         assert entrance.startswith("HTTP/1.0 303 ")
         assert "\r\nLocation: /\r\n" in entrance
-        cookie = f"{name}=secret"
-        assert f"\r\nSet-Cookie: {cookie}; HttpOnly; SameSite=Strict; Path=/\r\n" in entrance
-        assert "<title>" in answer(page, f"GET / HTTP/1.1\nHost: {host}\nCookie: a=b; {cookie}\n\n")
-        ours = ("X-Humanoid: 1", f"Cookie: {cookie}")
-        assert "403" in answer(page, command(host, "X-Humanoid: 1"))
-        assert "403" in answer(page, command(host, *ours, "Origin: http://evil.example"))
-        assert answer(page, command(host, *ours, f"Origin: http://{host}")).endswith('"text": "done"}')
+        kept = f"\r\nSet-Cookie: {name}={page.token}; HttpOnly; SameSite=Strict; Path=/\r\n"
+        assert kept in entrance
+        assert "<title>" in answer(page, f"GET / HTTP/1.1\nHost: {host}\n\n")
+        ours = "X-Humanoid: 1"
+        assert "403" in answer(page, command(host, ours, "Origin: http://evil.example"))
+        assert answer(page, command(host, ours, f"Origin: http://{host}")).endswith('"text": "done"}')
     finally:
         page.close()
 
@@ -155,7 +210,7 @@ def test_pages_that_come_late_get_the_present_state(page: server.PageServer) -> 
     page.show("time", 1.5)
     page.show("time", 2.5)
     with connected(page) as client:
-        client.sendall(b"GET /news HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        client.sendall(request(page, "/news"))
         seen = b""
         while b"2.5" not in seen:
             seen += client.recv(2**16)
@@ -186,7 +241,7 @@ def test_who_takes_nothing_is_not_waited_for(
     monkeypatch.setattr(server._Handler, "timeout", 0.1)
     before = threading.enumerate()
     with connected(page) as client:
-        client.sendall(b"GET /news HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        client.sendall(request(page, "/news"))
         assert client.recv(4) == b"HTTP"
         workers = [thread for thread in threading.enumerate() if thread not in before]
         assert len(workers) == 1
@@ -203,7 +258,7 @@ def test_who_resets_is_not_spoken_of(page: server.PageServer, capfd: pytest.Capt
     before = threading.enumerate()
     for path in ("/news", "/big"):
         with connected(page) as client:
-            client.sendall(f"GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+            client.sendall(request(page, path))
             assert client.recv(4) == b"HTTP"
             client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, LINGER_NOT)
     for number in range(200):

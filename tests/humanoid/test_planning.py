@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -175,6 +176,31 @@ def test_navigation_does_not_wait_where_the_robot_was_asked_to_stop() -> None:
     result = navigation.update(_gait(Mode.HOLDING, STOP_CALLED)).result
     assert result is not None
     assert result.outcome is Outcome.STOPPED
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"stamp": 0}, "the simulation has started again"),
+        ({"plan_id": 0}, "whole_body_controller has restarted"),
+        (
+            {"plan_id": 1, "mode": Mode.WALKING},
+            "the robot walks a plan that counts its steps anew, 1 after 5: ",
+        ),
+        (
+            {"plan_id": 0, "mode": Mode.WALKING},
+            "the robot walks a plan that counts its steps anew, 1 after 5: ",
+        ),
+    ],
+)
+def test_navigation_says_why_steps_are_counted_anew(changes: dict[str, Any], reason: str) -> None:
+    before = replace(_gait(stamp=SECOND), footstep_index=5, plan_id=3)
+    walk = Navigation((1.0, 0.0, 0.0), before)
+    values = {"stamp": 2 * SECOND, "footstep_index": 1} | changes
+    result = walk.update(replace(before, **values)).result
+    assert result is not None
+    assert result.outcome is Outcome.STOPPED
+    assert result.message.startswith(reason)
 
 
 def test_navigation_is_canceled_while_the_robot_holds() -> None:

@@ -6,8 +6,9 @@ import math
 from typing import Any
 
 from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
 from humanoid.ros.running import run
-from humanoid.simulation.battery import BatteryLimits, BatteryReading, Level
+from humanoid.simulation.battery import BatteryLimits, Level
 from humanoid.simulation.battery import BatteryMonitor as Monitor
 from humanoid_interfaces.msg import BatteryStatus
 from sensor_msgs.msg import BatteryState
@@ -23,14 +24,14 @@ class BatteryMonitor(BatteryMonitorBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._monitor = Monitor(BatteryLimits(low=self.parameters.low, critical=self.parameters.critical))
+        self._health = Health("battery_monitor: inputs", self.get_logger(), "readings")
         self._called = False
 
     def on_battery_state(self, message: BatteryState) -> None:
         """Take a reading."""
-        stamp = messages.nanoseconds(message.header.stamp)
-        self._monitor.take(
-            BatteryReading(stamp, message.voltage, message.current, message.percentage, message.temperature)
-        )
+        reading = self._health.read("readings", "/battery_state", messages.read_battery_state, message)
+        if reading is not None:
+            self._monitor.take(reading)
 
     def on_report_timer(self) -> None:
         """Publish the level."""

@@ -9,6 +9,7 @@ from humanoid.planning.dance import Dance, DanceFeedback, problem
 from humanoid.planning.walks import halted
 from humanoid.robot.body import load_body
 from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
 from humanoid.ros.latest import LatestJoints
 from humanoid.ros.news import News
 from humanoid.ros.running import run
@@ -37,6 +38,7 @@ class DanceActionServer(DanceActionServerBase):
         self._news = News(self)  # gait states
         self._stop = data.EmergencyStop(active=False)
         self._performance: _Performance | None = None
+        self._health = Health("dance_action_server: inputs", self.get_logger(), "readings")
 
     async def on_joint_states(self, message: JointState) -> None:
         """Take the joint positions."""
@@ -44,7 +46,10 @@ class DanceActionServer(DanceActionServerBase):
 
     async def on_gait_state(self, message: GaitState) -> None:
         """Take the state of the controller."""
-        self._gait = messages.read_gait_state(message)
+        gait = self._health.read("readings", "/gait_state", messages.read_gait_state, message)
+        if gait is None:
+            return
+        self._gait = gait
         self._news.come()
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:

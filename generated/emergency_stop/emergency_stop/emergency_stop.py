@@ -59,7 +59,9 @@ class EmergencyStop(EmergencyStopBase):
         self._told = True
         if message.mode == Mode.EMERGENCY_STOP and not self._latch.status.active:
             self._request(
-                _BEFORE, Cause.UNKNOWN, f"was active before this node started: {message.reason}"[:255]
+                _BEFORE,
+                Cause.UNKNOWN,
+                f"was active before this node started: {messages.printable(message.reason)}"[:255],
             )
             self._latch.withdraw(_BEFORE)  # nobody requests it any longer, but somebody has to reset it
         else:

@@ -53,9 +53,15 @@ class FootstepGenerationServer(FootstepGenerationServerBase):
                 response.message = f"there is no leg {request.first_leg}"
                 return response
             first_leg = data.Leg(request.first_leg)
-        x, y, yaw = (float(part) for part in messages.planar(request.goal.pose))
+        try:
+            start = messages.read_stance(request.start)
+        except ValueError as error:
+            response.status = int(PlanStatus.INVALID_REQUEST)
+            response.message = f"the stance: {error}"[:255]
+            return response
+        x, y, yaw = messages.planar(request.goal.pose).tolist()
         result = plan_footsteps(
-            messages.read_stance(request.start),
+            start,
             (x, y, yaw),
             limits=self._limits(request),
             ground=replace(GROUND, half_size=self.parameters.distance_max),

@@ -14,6 +14,7 @@ from humanoid.planning.footsteps import PlanStatus, StepLimits, fitted, shorter
 from humanoid.planning.steering import Ahead, free_ahead
 from humanoid.robot.body import load_body
 from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
 from humanoid.ros.grids import read_occupancy_grid, read_path
 from humanoid.ros.running import run
 from humanoid_interfaces.msg import GaitState
@@ -36,25 +37,30 @@ class FootstepPlanner(FootstepPlannerBase):
         self._pace = Pace(values.walking_speed)
         body = load_body(values.model_file, values.joint_map)
         self._limits = fitted(StepLimits().at_pace(self._pace), body)
-        self._gait: GaitState | None = None
+        self._gait: data.GaitState | None = None
+        self._health = Health("footstep_planner: inputs", self.get_logger(), "readings", "maps", "velocities")
         self._points = np.zeros((0, 2))
 
     async def on_map(self, message: OccupancyGrid) -> None:
         """Take where obstacles are."""
-        try:
-            self._points = read_occupancy_grid(message).occupied()
-        except ValueError as error:
-            self.get_logger().warning(f"/map: {error}", throttle_duration_sec=5.0)
+        grid = self._health.read("maps", "/map", read_occupancy_grid, message)
+        if grid is not None:
+            self._points = grid.occupied()
 
     async def on_gait_state(self, message: GaitState) -> None:
         """Remember where the feet are."""
-        self._gait = message
+        self._gait = (
+            self._health.read("readings", "/gait_state", messages.read_gait_state, message) or self._gait
+        )
 
     async def on_teleop_velocity(self, message: Twist) -> None:
         """Let a velocity through if the next steps at it are free; otherwise stop."""
         velocity = message.linear.x, message.linear.y, message.angular.z
+        problem = "" if np.isfinite(velocity).all() else "/teleop/velocity holds a number that is not finite"
+        if not self._health.takes("velocities", problem):
+            return
         if self._gait is not None and len(self._points) and any(velocity):
-            centre = messages.read_gait_state(self._gait).stance.centre
+            centre = self._gait.stance.centre
             values = self.parameters
             ahead = Ahead(values.horizon, values.clearance, self._pace.double_support)
             if not free_ahead(centre, velocity, self._points, self._limits, ahead):
@@ -109,10 +115,12 @@ class FootstepPlanner(FootstepPlannerBase):
             response.status, response.message = int(PlanStatus.UNKNOWN), str(error)[:255]
             return
         if rest.status == int(PlanStatus.PLANNED):
-            steps += [
-                replace(step, index=index + number)
-                for number, step in enumerate(messages.read_footstep_plan(rest.plan).steps)
-            ]
+            try:
+                plan = messages.read_footstep_plan(rest.plan)
+            except ValueError as error:
+                response.status, response.message = int(PlanStatus.UNKNOWN), f"/plan_footsteps: {error}"
+                return
+            steps += [replace(step, index=index + number) for number, step in enumerate(plan.steps)]
         elif not (rest.status == int(PlanStatus.ALREADY_THERE) and steps):
             response.status, response.message = rest.status, rest.message
             return
@@ -134,9 +142,8 @@ class FootstepPlanner(FootstepPlannerBase):
                 raise ValueError(f"the {what} is in '{frame}'; I plan in odom")
         if request.first_leg not in (0, data.Leg.LEFT, data.Leg.RIGHT):
             raise ValueError(f"there is no leg {request.first_leg}")
-        stance = messages.read_stance(request.start)
-        if not all(np.isfinite(foot).all() for foot in stance.feet):
-            raise ValueError("the stance holds a number that is not finite")
+        messages.check_count("first_index", request.first_index)
+        messages.read_stance(request.start)
         if not 0 <= request.max_step_length < np.inf:
             raise ValueError(
                 f"max_step_length is {request.max_step_length:g} m; it must be finite, 0 or more"

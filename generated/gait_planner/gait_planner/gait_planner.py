@@ -29,6 +29,7 @@ _THICKNESS = 0.005  # m
 _WALKING = "navigation_action_server, or whoever sent the plan under way, has been silent"
 _STEERING = "teleop, or whoever sent velocities, has been silent"
 _HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP, data.Mode.FALLEN}
+_DEAF = {*_HALTED, data.Mode.DANCING}
 _LEASE = 500_000_000  # ns that a velocity is valid, and a plan that was sent twice
 
 
@@ -50,17 +51,16 @@ class GaitPlanner(GaitPlannerBase):
         self._upcoming = FootstepPlan()  # as last published
         self._asked = FootstepPlan()  # the last plan with steps
         self._walking = False  # whether the robot walks it
+        self._deaf = ""  # why it obeys no velocity at present
         self._lease: tuple[str, int] | None = None  # whose next message is expected, and until when [ns]
-        self._health = Health("gait_planner: commands", self.get_logger(), "plans", "velocities")
+        self._health = Health("gait_planner: commands", self.get_logger(), "plans", "velocities", "readings")
 
     def on_footsteps_plan(self, message: FootstepPlan) -> None:
         """Walk a plan, or stop if it has no steps."""
-        self._lease = None
-        try:
-            plan = messages.read_footstep_plan(message)
-        except ValueError as error:
-            self._health.takes("plans", f"/footsteps/plan: {error}")
+        plan = self._health.read("plans", "/footsteps/plan", messages.read_footstep_plan, message)
+        if plan is None:
             return
+        self._lease = None
         if not plan.steps:
             self._stop()
         elif message != self._asked:
@@ -72,7 +72,8 @@ class GaitPlanner(GaitPlannerBase):
     def on_humanoid_cmd_vel(self, message: Twist) -> None:
         """Walk at a velocity."""
         velocity = message.linear.x, message.linear.y, message.angular.z
-        if not self._health.takes("velocities", self._planner.velocity(*velocity)):
+        deaf = self._deaf if any(velocity) else ""
+        if not self._health.takes("velocities", deaf or self._planner.velocity(*velocity)):
             return
         if any(velocity):
             self._walking, self._lease = False, (_STEERING, self._now() + _LEASE)
@@ -81,7 +82,13 @@ class GaitPlanner(GaitPlannerBase):
 
     def on_gait_state(self, message: GaitState) -> None:
         """Decide what to do next, each time that the controller reports its state."""
-        state = messages.read_gait_state(message)
+        state = self._health.read("readings", "/gait_state", messages.read_gait_state, message)
+        if state is None:
+            return
+        self._deaf = ""
+        if state.mode in _DEAF:
+            why = f": {state.reason}" if state.reason else ""
+            self._deaf = f"the robot is not steered in mode {state.mode.name.lower().replace('_', ' ')}{why}"
         plan = self._planner.update(state)
         walked = self._walking and state.footstep_index > self._asked.steps[-1].index
         if walked or state.mode in _HALTED:

@@ -13,6 +13,7 @@ from humanoid.planning.task_manager import TaskManager
 from humanoid.planning.tasks import Task, task_of, words_of
 from humanoid.robot.body import load_body
 from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
 from humanoid.ros.running import run
 from humanoid.simulation.battery import Level
 from humanoid_interfaces.action import PerformDance, WalkTo
@@ -52,6 +53,7 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
         self._posture: JointState | None = None  # while the robot looks or points
         self._over: Future | None = None  # set when the time of a task is over
         self._greeted = False
+        self._health = Health("high_level_task_manager: inputs", self.get_logger(), "readings", "words")
         for words in self.parameters.tasks:
             self._add(words)
         self._tell(TaskStatus.STATE_IDLE)
@@ -68,7 +70,9 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
 
     async def on_gait_state(self, message: GaitState) -> None:
         """Remember whether the robot stands, and where."""
-        self._gait = messages.read_gait_state(message)
+        self._gait = (
+            self._health.read("readings", "/gait_state", messages.read_gait_state, message) or self._gait
+        )
 
     async def on_face_detection_detections(self, message: DetectedObjectArray) -> None:
         """Greet each person who appears, once."""
@@ -120,12 +124,12 @@ class HighLevelTaskManager(HighLevelTaskManagerBase):
 
     def _add(self, words: str) -> None:
         if self._stopped:
-            self.get_logger().warning(f"'{words}' is not done: emergency stop")
+            self.get_logger().warning(f"'{messages.printable(words)}' is not done: emergency stop")
             return
         try:
             self.manager.add(task_of(words))
         except ValueError as error:
-            self.get_logger().warning(str(error))
+            self._health.takes("words", messages.printable(str(error)))
 
     async def _do(self, task: Task) -> None:
         """Do a task to its end."""

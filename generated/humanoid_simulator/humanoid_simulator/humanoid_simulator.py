@@ -17,7 +17,7 @@ from humanoid.robot.external import load_model
 from humanoid.robot.obstacles import Solid, random_solids, solids_of
 from humanoid.robot.urdf import write_urdf
 from humanoid.ros import images, messages
-from humanoid.ros.diagnostics import Health
+from humanoid.ros.diagnostics import UNANSWERED, Health
 from humanoid.ros.markers import obstacle_markers
 from humanoid.ros.running import run
 from humanoid.seeds import generator
@@ -66,6 +66,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
         self._health = Health(
             "humanoid_simulator: commands", self.get_logger(), "set-points", "pushes", "moves"
         )
+        self._unanswered = 0  # steps without set-points
         self._paused = False
         self._blind = False  # no image can be drawn here
         self._losses = generator(self.parameters.seed, "camera")
@@ -92,12 +93,11 @@ class HumanoidSimulator(HumanoidSimulatorBase):
 
     def on_joint_commands(self, message: JointState) -> None:
         """Give the servos new set-points; in lockstep, time waits for them."""
-        try:
-            command = messages.read_joint_commands(message, self._model.body.joints)
-        except ValueError as error:
-            self._health.takes("set-points", f"/joint_commands: {error}")
+        command = self._health.read(
+            "set-points", "/joint_commands", messages.read_joint_commands, message, self._model.body.joints
+        )
+        if command is None or not self._health.takes("set-points", self.simulator.protect(command)):
             return
-        self.simulator.protect(command)
         self._commanded = True
         self._waiting.answered(time.monotonic())
         if command.stamp == self.stamp:
@@ -167,6 +167,7 @@ class HumanoidSimulator(HumanoidSimulatorBase):
             self._step_in_time()
         elif self._waiting.is_over(time.monotonic(), self.parameters.patience):
             self._waiting.alone = True
+            self._unanswered += 1
             text = f"no set-points from {_COMMANDER}: time goes on without them"
             self.get_logger().warning(text, throttle_duration_sec=5.0)
             self._step()
@@ -278,7 +279,8 @@ class HumanoidSimulator(HumanoidSimulatorBase):
                     power_supply_technology=BatteryState.POWER_SUPPLY_TECHNOLOGY_LION,
                 )
             )
-            self.publish_diagnostics(self._health.report(self.stamp))
+            counts = {UNANSWERED: self._unanswered}
+            self.publish_diagnostics(self._health.report(self.stamp, others=counts))
         if self._is_time_for("clock", self.parameters.clock_period):
             self.publish_clock(Clock(clock=messages.time_of(self.stamp)))
 

@@ -11,7 +11,7 @@ from humanoid.control.plausible import imu_problem, joints_problem, wrench_probl
 from humanoid.robot.external import load_model
 from humanoid.ros import messages
 from humanoid.ros.diagnostics import Health
-from humanoid.ros.recent import Recent, newest_of_all, rewound
+from humanoid.ros.recent import Recent, leapt, misdated, newest_of_all
 from humanoid.ros.running import run
 from humanoid.sensing.estimator import StateEstimator
 from humanoid_interfaces.msg import GaitState
@@ -74,12 +74,17 @@ class ImuFusion(ImuFusionBase):
 
     def on_gait_state(self, message: GaitState) -> None:
         """Take which foot is planned to carry the robot."""
-        self._gait = messages.read_gait_state(message)
-        if not self._placed:
-            self._place(self._gait.stance.feet)
+        gait = self._health.read("readings", "/gait_state", messages.read_gait_state, message)
+        if gait is not None:
+            self._gait = gait
+            if not self._placed:
+                self._place(gait.stance.feet)
 
     def handle_reset(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """Start again with the feet at the origin."""
+        """Start again with the feet at the origin, unless somebody walks by the present estimate."""
+        if self._gait is not None:
+            response.message = "whole_body_controller relies on this estimate: reset the simulator instead"
+            return response
         self._estimator.restart()
         self._done = -1
         response.success = True
@@ -96,12 +101,12 @@ class ImuFusion(ImuFusionBase):
 
     def _take(self, topic: Recent[Any], stamp: int, reading: object, name: str) -> None:
         if not topic.put(stamp, reading):
-            if not rewound(self._joints, self._imu, *self._wrenches):
-                late = (topic.newest - stamp) / data.SECOND
-                self._health.takes("readings", f"{name} is {late:.3f} s older than the one before")
+            if leapt(self._joints, self._imu, *self._wrenches):
+                self._done = -1  # the simulator started again
+                self._estimator.restart()
+            elif topic.newest != stamp:
+                self._health.takes("readings", misdated(name, stamp, topic))
                 return
-            self._done = -1  # the simulator started again
-            self._estimator.restart()
         self._estimate()
 
     def _estimate(self) -> None:

@@ -11,7 +11,7 @@ from humanoid import data
 from humanoid.kinematics.dynamics import RobotState
 from humanoid.kinematics.footprint import IDENTITY, from_footprint
 from humanoid.kinematics.head import HeadPose
-from humanoid.kinematics.ik import IkRequest, IkResult, IkStatus, InverseKinematics
+from humanoid.kinematics.ik import FARTHEST, IkRequest, IkResult, IkStatus, InverseKinematics
 from humanoid.robot.external import load_model
 from humanoid.ros import messages
 from humanoid.ros.latest import LatestJoints
@@ -106,12 +106,14 @@ class InverseKinematicsServer(InverseKinematicsServerBase):
         """Position (3,) and quaternion (4,) of a target in base_link. Raises ValueError for other frames."""
         position = messages.numbers(target.pose.position)
         orientation = messages.numbers(target.pose.orientation)
-        frame = target.header.frame_id
+        frame = messages.printable(target.header.frame_id)
         if frame in {"", _BASE}:
             return position, orientation
         if frame != _FOOTPRINT:
             raise ValueError(f"the target is in '{frame}'; I think in {_BASE} and {_FOOTPRINT}")
         present = self._joints.get()
+        if not max(np.abs(position).max(), np.abs(orientation).max()) <= FARTHEST:
+            return position, orientation  # which the solvers refuse
         if present is None:
             raise ValueError(f"nobody has reported joint states: without them, {_FOOTPRINT} is unknown")
         self._legs.set_posture(np.zeros(3), IDENTITY, present.position)

@@ -13,7 +13,7 @@ from humanoid.control.standby import Standby
 from humanoid.robot.external import load_model
 from humanoid.ros import messages
 from humanoid.ros.diagnostics import Health
-from humanoid.ros.recent import Recent, newest_of_all, rewound
+from humanoid.ros.recent import Recent, leapt, misdated, newest_of_all
 from humanoid.ros.running import run
 from humanoid.sensing.joints import JointCollector
 from humanoid.simulation.safety import LATEST, CommandGate
@@ -102,15 +102,18 @@ class JointController(JointControllerBase):
 
     def on_diagnostics_timer(self) -> None:
         """Report what was refused."""
+        self.publish_servos_standby(String(data=self._said))  # in case somebody else has said otherwise
         stamp = max(self._joints.newest, 0)
         report = self._health.report(stamp, self._standby.reason, asdict(self._gate.refusals))
         self.publish_diagnostics(report)
 
     def _take(self, topic: Recent[Any], stamp: int, reading: Any) -> None:
         if not topic.put(stamp, reading):
-            if not rewound(self._joints, self._imu, *self._wrenches):
+            if leapt(self._joints, self._imu, *self._wrenches):
+                self._begin_anew()
+            elif topic.newest != stamp:
+                self._health.takes("readings", misdated("a reading", stamp, topic))
                 return
-            self._begin_anew()
         if self._standby.is_due(self._joints.newest):
             self._stand()
 

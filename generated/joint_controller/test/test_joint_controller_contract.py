@@ -641,6 +641,7 @@ TIMERS = [
         1.0,
         True,
         [
+            ("publish_servos_standby", std_msgs.msg.String, "/servos/standby", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=1, reliability=ReliabilityPolicy.RELIABLE, durability=DurabilityPolicy.TRANSIENT_LOCAL), 0.0),
             ("publish_diagnostics", diagnostic_msgs.msg.DiagnosticArray, "/diagnostics", QoSProfile(history=HistoryPolicy.KEEP_LAST, depth=10, reliability=ReliabilityPolicy.RELIABLE), 0.0),
         ],
     ),

@@ -20,9 +20,19 @@ class ParametersError(Exception):
 class JointStatePublisherParameters:
     """The parameters of the node joint_state_publisher."""
 
+    model_file: str
+    """A humanoid of your own as MJCF, the same for all nodes; empty for ours
+
+    Can be set at start only.
+    """
+    joint_map: str
+    """Which of its joints corresponds to which of ours, as YAML; empty if they have the same names
+
+    Can be set at start only.
+    """
     joints: tuple[str, ...]
-    """Names and order of the joints that are published; empty for all, in the order in which drivers first
-    report them
+    """Names and order of the joints that are published; empty for those of the robot. Other joints are
+    refused
 
     Must not hold a value twice. Can be set at start only.
     """
@@ -65,6 +75,8 @@ def read_parameters(node: Node) -> JointStatePublisherParameters:
         value = node.get_parameter_or(name).value
         values[name] = _converted(name, default if value is None else value)
     return JointStatePublisherParameters(
+        model_file=values["model_file"],
+        joint_map=values["joint_map"],
         joints=values["joints"],
         stale_after=values["stale_after"],
     )
@@ -102,11 +114,29 @@ def _problem(name: str, value: Any) -> str:
 def _declarations() -> list[tuple[str, Parameter.Type, Any, ParameterDescriptor]]:
     return [
         (
+            "model_file",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
+                read_only=True,
+            ),
+        ),
+        (
+            "joint_map",
+            Parameter.Type.STRING,
+            "",
+            ParameterDescriptor(
+                description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+                read_only=True,
+            ),
+        ),
+        (
             "joints",
             Parameter.Type.STRING_ARRAY,
             [],
             ParameterDescriptor(
-                description="Names and order of the joints that are published; empty for all, in the order in which drivers first report them",
+                description="Names and order of the joints that are published; empty for those of the robot. Other joints are refused",
                 read_only=True,
                 additional_constraints="must not hold a value twice",
             ),

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from humanoid.data import SECOND
+from humanoid.robot.body import load_body
 from humanoid.ros import messages
 from humanoid.ros.diagnostics import Health
 from humanoid.ros.running import run
@@ -22,7 +23,8 @@ class JointStatePublisher(JointStatePublisherBase):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         stale_after = round(self.parameters.stale_after * SECOND)
-        self._joints = JointCollector(self.parameters.joints, stale_after)
+        body = load_body(self.parameters.model_file, self.parameters.joint_map)
+        self._joints = JointCollector(self.parameters.joints or body.joints, stale_after)
         self._health = Health("joint_state_publisher: drivers", self.get_logger(), "reports")
 
     def on_joint_encoders(self, message: JointState) -> None:

@@ -335,12 +335,30 @@ class ParameterCase:
 # fmt: off
 PARAMETERS = [
     ParameterCase(
+        "model_file",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="A humanoid of your own as MJCF, the same for all nodes; empty for ours",
+        read_only=True,
+    ),
+    ParameterCase(
+        "joint_map",
+        Parameter.Type.STRING,
+        "",
+        ["", "x", "xx", "xxx"],
+        [],
+        description="Which of its joints corresponds to which of ours, as YAML; empty if they have the same names",
+        read_only=True,
+    ),
+    ParameterCase(
         "joints",
         Parameter.Type.STRING_ARRAY,
         [],
         [[], ["a"], ["b"], ["c"], ["d"], ["a", "b"]],
         [["a", "a"]],
-        description="Names and order of the joints that are published; empty for all, in the order in which drivers first report them",
+        description="Names and order of the joints that are published; empty for those of the robot. Other joints are refused",
         read_only=True,
     ),
     ParameterCase(

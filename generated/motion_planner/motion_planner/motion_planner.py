@@ -9,6 +9,7 @@ import numpy as np
 from humanoid.planning.routes import RouteStatus, disc_points, plan_route
 from humanoid.robot.scene import GROUND
 from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
 from humanoid.ros.grids import path, read_occupancy_grid
 from humanoid.ros.running import run
 from humanoid_interfaces.srv import PlanPath
@@ -28,15 +29,14 @@ class MotionPlanner(MotionPlannerBase):
         # What always stands in the scene, and is not seen as an obstacle.
         self._furniture = np.concatenate([disc_points(obstacle) for obstacle in GROUND.obstacles])
         self._points = self._furniture
+        self._health = Health("motion_planner: inputs", self.get_logger(), "maps")
 
     def on_map(self, message: OccupancyGrid) -> None:
         """Take where obstacles are."""
-        try:
-            seen = read_occupancy_grid(message).occupied(self.parameters.occupied_from)
-        except ValueError as error:
-            self.get_logger().warning(f"/map: {error}", throttle_duration_sec=5.0)
-            return
-        self._points = np.concatenate([self._furniture, seen])
+        grid = self._health.read("maps", "/map", read_occupancy_grid, message)
+        if grid is not None:
+            seen = grid.occupied(self.parameters.occupied_from)
+            self._points = np.concatenate([self._furniture, seen])
 
     def handle_plan_path(self, request: PlanPath.Request, response: PlanPath.Response) -> PlanPath.Response:
         """Plan a path between two poses, or say why there is none."""

@@ -14,6 +14,7 @@ from humanoid.planning.walks import GoalTolerance, Outcome, WalkResult, WalkTick
 from humanoid.robot.body import load_body
 from humanoid.robot.scene import GROUND
 from humanoid.ros import messages
+from humanoid.ros.diagnostics import Health
 from humanoid.ros.grids import read_occupancy_grid
 from humanoid.ros.news import News
 from humanoid.ros.running import run
@@ -49,17 +50,21 @@ class NavigationActionServer(NavigationActionServerBase):
         self._plan: data.FootstepPlan | None = None
         self._sent = FootstepPlan()  # the same state as the original message
         self._tick: WalkTick | None = None
+        self._health = Health("navigation_action_server: inputs", self.get_logger(), "readings", "maps")
 
     async def on_gait_state(self, message: GaitState) -> None:
         """Check how far the walk has come, and plan again or end it."""
-        self._gait = messages.read_gait_state(message)
+        gait = self._health.read("readings", "/gait_state", messages.read_gait_state, message)
+        if gait is None:
+            return
+        self._gait = gait
         self._news.come()
         walk = self._walk
         if walk is None:
             return
         if walk.handle.is_cancel_requested:
             walk.navigation.cancel()
-        self._tick = tick = walk.navigation.update(self._gait)
+        self._tick = tick = walk.navigation.update(gait)
         if tick.plan is not None:
             walk.stopping = False  # it has held, or waited for a way, and goes on
             self._send(tick.plan)
@@ -71,15 +76,11 @@ class NavigationActionServer(NavigationActionServerBase):
 
     async def on_map(self, message: OccupancyGrid) -> None:
         """Plan anew if something is in the way."""
-        try:
-            points = read_occupancy_grid(message).occupied()
-        except ValueError as error:
-            self.get_logger().warning(f"/map: {error}", throttle_duration_sec=5.0)
-            return
-        if self._walk is None or self._gait is None:
+        grid = self._health.read("maps", "/map", read_occupancy_grid, message)
+        if grid is None or self._walk is None or self._gait is None:
             return
         navigation = self._walk.navigation
-        if blocked_step(navigation.steps_ahead, points, self._gait.stance.centre, self._limits):
+        if blocked_step(navigation.steps_ahead, grid.occupied(), self._gait.stance.centre, self._limits):
             navigation.replan()
 
     async def on_emergency_stop(self, message: EmergencyStop) -> None:
@@ -276,7 +277,10 @@ class _Ways:
             return PlanResult(PlanStatus.UNKNOWN, str(error), nothing)
         known = steps.status in list(PlanStatus)
         status = PlanStatus(steps.status) if known else PlanStatus.UNKNOWN
-        return PlanResult(status, str(steps.message), messages.read_footstep_plan(steps.plan))
+        try:
+            return PlanResult(status, str(steps.message), messages.read_footstep_plan(steps.plan))
+        except ValueError as error:
+            return PlanResult(PlanStatus.UNKNOWN, f"/follow_path: {error}", nothing)
 
 
 class _Walk:

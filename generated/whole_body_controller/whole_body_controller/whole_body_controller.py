@@ -14,7 +14,7 @@ from humanoid.robot.external import load_model
 from humanoid.ros import messages
 from humanoid.ros.balance import balance_state
 from humanoid.ros.diagnostics import Health
-from humanoid.ros.recent import Recent, newest_of_all, rewound
+from humanoid.ros.recent import Recent, leapt, misdated, newest_of_all
 from humanoid.ros.running import run
 from humanoid.simulation.safety import clock_problem
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan
@@ -29,6 +29,7 @@ from whole_body_controller._whole_body_controller_parameters import ParametersEr
 _STATE_PERIOD = 20_000_000  # ns between gait states while nothing in them changes but numbers
 _BALANCE_PERIOD = 40_000_000  # ns between messages about the balance, while somebody wants them
 _LATE = 3  # readings, or control periods, after which the controller uses what it has
+_LEAP = data.SECOND  # ns by which a clock goes wrong, because no control loop is as late as that
 _POSTURE_LEASE = 500_000_000  # ns that a posture is valid: a dance sends one 50 times a second
 _HALTED = {data.Mode.HOLDING, data.Mode.EMERGENCY_STOP}
 
@@ -59,6 +60,7 @@ class WholeBodyController(WholeBodyControllerBase):
         self._answer: Float64MultiArray | None = None  # its command
         self._overdue = False  # newest readings at the last check
         self._plan_id = 0
+        self._refused_id: int | None = None  # of the last plan that was refused
         self._posture: int | None = None  # when the last one arrived
         self._stop = data.EmergencyStop(active=False)
         self._stopped = False
@@ -97,14 +99,16 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_footsteps_upcoming(self, message: FootstepPlan) -> None:
         """Follow new steps; repeated ones are a sign of life."""
         self._controller.heard("gait_planner", max(self._done, 0))
-        if message.plan_id == self._plan_id:
+        if message.plan_id in (self._plan_id, self._refused_id):
             return
-        self._plan_id = message.plan_id
         try:
             why_not = self._follow(messages.read_footstep_plan(message))
         except ValueError as error:
             why_not = str(error)
-        self._health.takes("plans", f"{message.plan_id}: {why_not}" if why_not else "")
+        if self._health.takes("plans", f"{message.plan_id}: {why_not}" if why_not else ""):
+            self._plan_id, self._refused_id = message.plan_id, None
+        else:
+            self._refused_id = message.plan_id
 
     def on_posture(self, message: JointState) -> None:
         """Bring the upper body to a posture."""
@@ -123,8 +127,9 @@ class WholeBodyController(WholeBodyControllerBase):
 
     def on_servos_standby(self, message: String) -> None:
         """Stand while the servos hold the robot: they release it once set-points would not move them."""
-        self._released = bool(self._servos and not message.data)
-        self._servos = message.data
+        if message.data != self._servos:  # it is repeated
+            self._released = bool(self._servos and not message.data)
+            self._servos = message.data
 
     def handle_stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """End the step in the air and stand until new footsteps arrive."""
@@ -136,7 +141,7 @@ class WholeBodyController(WholeBodyControllerBase):
     def on_control_timer(self) -> None:
         """Make sure that set-points go out when readings are overdue."""
         now = self.get_clock().now().nanoseconds
-        overdue = self._done >= 0 and now - self._done >= _LATE * self._period
+        overdue = self._done >= 0 and _LATE * self._period <= now - self._done <= _LEAP
         if overdue and self._overdue:  # nothing has arrived since the last check either
             self._tick(now)
         self._overdue = overdue
@@ -160,11 +165,13 @@ class WholeBodyController(WholeBodyControllerBase):
 
     def _take(self, topic: Recent[Any], stamp: int, reading: object, name: str) -> None:
         if not topic.put(stamp, reading):
-            if not rewound(self._joints, self._imu):
-                late = (topic.newest - stamp) / data.SECOND
-                self._health.takes("readings", f"{name} is {late:.3f} s older than the one before")
+            # Odometry follows the other two: where they go back, it does, too.
+            others = (self._odometry, self._joints) if topic is self._odometry else (self._joints, self._imu)
+            if leapt(*others):
+                self._begin_anew()
+            elif topic.newest != stamp:
+                self._health.takes("readings", misdated(name, stamp, topic))
                 return
-            self._begin_anew()
         self._tick_if_complete()
 
     def _tick_if_complete(self) -> None:
@@ -190,7 +197,8 @@ class WholeBodyController(WholeBodyControllerBase):
             self._controller.posture(None)
             self.get_logger().warning("whoever sent postures is silent: back to standing")
         if self._servos:
-            self._controller.hold(f"the servos hold the robot on their own: {self._servos}")
+            reason = messages.printable(self._servos)
+            self._controller.hold(f"the servos hold the robot on their own: {reason}"[:255])
             self._controller.begin_here()
         elif self._released and self._controller.stepping.standing:
             self._released = False

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from geometry_msgs.msg import Twist, Vector3
 from humanoid.data import Mode
 from humanoid.show.audience import Audience
 from humanoid.show.web.view_node import WebView
@@ -73,6 +74,38 @@ def test_the_robot_does_what_visitors_want(
     robot.until(lambda: robot.mode is Mode.WALKING)
     assert visitor.ask(do="push", x=2.0, y=0.0) == (True, "pushed with 2.0 N s")
     visitor.close()
+
+
+def test_a_robot_that_dances_is_not_driven(
+    make_robot: MakeRobot, ros_executor: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    robot = make_robot(*EVERYBODY, "dance_action_server")
+    visitor = Visitor(robot, ros_executor, monkeypatch)
+    robot.until(lambda: robot.mode is Mode.STANDING)
+    assert visitor.ask(do="dance", name="wave") == (True, "dancing: wave")
+    robot.until(lambda: visitor.view._commands.mode == "dancing")
+    assert visitor.ask(do="drive", forward=1, left=0, turn=0) == (
+        False,
+        "it cannot be driven now: it is dancing",
+    )
+    assert visitor.ask(do="drive", forward=0, left=0, turn=0) == (True, "let go")
+    robot.publisher(Twist, "/humanoid/cmd_vel", 1)(Twist(linear=Vector3(x=0.2)))
+    robot.expect("gait_planner", "the robot is not steered in mode dancing")
+    assert robot.mode is Mode.DANCING
+    visitor.close()
+
+
+def test_who_pressed_the_stop_releases_it(make_robot: MakeRobot, ros_executor: Any) -> None:
+    """A scenario may end with a press; a page that stays open is of no use then."""
+    robot = make_robot(*EVERYBODY)
+    audience = Audience(parameter_overrides=[Parameter("use_sim_time", value=True)])
+    ros_executor.add_node(audience)
+    robot.until(lambda: robot.mode is Mode.STANDING)
+    audience.play(["0.1: press"], 0)
+    robot.until(lambda: robot.mode is Mode.EMERGENCY_STOP)
+    audience.let_go()
+    robot.until(lambda: robot.mode is Mode.STANDING)
+    audience.destroy_node()
 
 
 def test_time_obeys(make_robot: MakeRobot, ros_executor: Any, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -51,6 +51,14 @@ def until(client: socket.socket, words: bytes) -> bytes:
     return found
 
 
+@pytest.mark.parametrize("path", ["http://[", "/events?" + "&".join(["shown=x"] * 200)])
+def test_addresses_that_are_none_are_refused(
+    page: Server, path: str, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert answer(page, path).startswith("HTTP/1.0 400 ")
+    assert capfd.readouterr().err == ""
+
+
 @pytest.mark.parametrize("path", ["/", "/style.css", "/top.js", "/graph.js", "/message.js", "/icon.svg"])
 def test_files_are_served_to_their_page_only(page: Server, path: str) -> None:
     text = answer(page, path, f"Origin: http://localhost:{page.port}", "Sec-Fetch-Site: same-origin")

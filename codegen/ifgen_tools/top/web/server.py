@@ -164,9 +164,14 @@ class _Handler(BaseHTTPRequestHandler):
         if not self._is_from_here():
             self._refuse(HTTPStatus.FORBIDDEN)
             return
-        path = urlsplit(self.path)
+        try:
+            path = urlsplit(self.path)
+            query = parse_qs(path.query, max_num_fields=2 * _MOST_TOPICS)
+        except ValueError:  # of an address in brackets that is none, or of too many fields
+            self._refuse(HTTPStatus.BAD_REQUEST)
+            return
         if path.path == "/events":
-            self._stream(parse_qs(path.query, max_num_fields=2 * _MOST_TOPICS))
+            self._stream(query)
         elif path.path in _FILES:
             name, content_type = _FILES[path.path]
             body = (_FOLDER / name).read_bytes()

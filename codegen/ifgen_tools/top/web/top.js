@@ -7,7 +7,7 @@ const CHANGE = 300; // [ms] after which a change of what is looked at opens a ne
 const MOST_SHOWN = 50; // topics whose bandwidth is measured
 
 const $ = (id) => document.getElementById(id);
-const state = { view: "graph", snapshot: null, picture: null, inspected: "", filter: "", sorts: {}, shown: [], hasServices: false, hasLeaves: false };
+const state = { view: "graph", snapshot: null, picture: null, inspected: "", filter: "", sorts: {}, shown: [], hasServices: false, hasLeaves: true };
 
 // Figures as texts
 

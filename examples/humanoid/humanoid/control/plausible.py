@@ -52,7 +52,7 @@ def odometry_problem(odometry: Odometry) -> str:
 
 
 def _turn(where: str, orientation: Array) -> str:
-    square = float(orientation @ orientation)
+    square = sum(value * value for value in orientation.tolist())
     return "" if 0.9 < square < 1.1 else _words(where, square, "the orientation is not a unit quaternion")
 
 

@@ -12,7 +12,7 @@ from ..robot.model import HumanoidModel
 from ..robot.table import HEAD_JOINTS, WAIST_JOINTS
 from ..spatial import Array
 from .chains import ChainKinematics, chains_of
-from .ik import IkRequest, IkStatus, InverseKinematics
+from .ik import FARTHEST, IkRequest, IkStatus, InverseKinematics
 
 POSITION_TOLERANCE = 5e-3  # metres
 ORIENTATION_TOLERANCE = 0.02  # radians
@@ -74,6 +74,8 @@ class HeadPose:
             return HeadPoseResult(False, "tolerances must be finite and not negative")
         if not np.isfinite(position).all():
             return HeadPoseResult(False, "the target holds a number that is not finite")
+        if max(np.abs(position).max(), np.abs(orientation).max()) > FARTHEST:
+            return HeadPoseResult(False, "the target holds a number that is not plausible")
         if mode == HeadMode.LOOK_AT:
             return self._look_at(np.asarray(position, float), orientation_tolerance or ORIENTATION_TOLERANCE)
         if mode != HeadMode.POSE:

@@ -20,6 +20,7 @@ from .leg_ik import solve_leg
 POSITION_TOLERANCE, ORIENTATION_TOLERANCE = 1e-3, 5e-3  # metres, radians
 ATTEMPTS = 50
 TIMEOUT = 1.0  # seconds
+FARTHEST = 1e6  # the largest number in a target: squares of it are numbers, too
 _MOST_ATTEMPTS = 10_000
 
 
@@ -198,6 +199,8 @@ def _problem(request: IkRequest, body: Body) -> str:
     """The first error in the numbers and names of a request, or ""."""
     if not (np.isfinite(request.position).all() and np.isfinite(request.orientation).all()):
         return "the target holds a number that is not finite"
+    if max(np.abs(request.position).max(), np.abs(request.orientation).max()) > FARTHEST:
+        return "the target holds a number that is not plausible"
     if np.linalg.norm(request.orientation) < 1e-6 and not request.position_only:
         return "the target's quaternion has length 0"
     for name, position in request.seed.items():

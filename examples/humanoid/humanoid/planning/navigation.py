@@ -58,6 +58,7 @@ class Navigation:
         self._replan_distance = replan_distance
         self._begun, self._first_index = gait.stamp, gait.footstep_index
         self._checked = self._seen = gait.footstep_index
+        self._stamp = gait.stamp  # of the last state
         self._planned = gait.stamp  # when the last new plan was made
         self._rounds = 0
         self._recovery = round(recovery_time * SECOND)
@@ -113,9 +114,10 @@ class Navigation:
         """Take the newest gait state; returns what to send."""
         plan, self._news = self._news, None
         result, stop = None, False
-        anew, self._seen = gait.footstep_index < self._seen, gait.footstep_index
-        if anew:
-            result = self.stopped(gait, "whole_body_controller has restarted")
+        before, self._seen = self._seen, gait.footstep_index
+        last, self._stamp = self._stamp, gait.stamp
+        if gait.footstep_index < before:
+            result = self.stopped(gait, _why_less(gait, before, last))
         elif gait.mode is Mode.FALLEN:
             result = self._result(Outcome.FELL, "the robot has fallen", gait)
         elif gait.mode in STOPPED and not self._recovers(gait):
@@ -275,3 +277,15 @@ class Navigation:
 
     def _distance(self, pose: Array) -> float:
         return float(np.hypot(pose[0] - self.goal[0], pose[1] - self.goal[1]))
+
+
+def _why_less(gait: GaitState, before: int, last: int) -> str:
+    """The reason why the controller counts fewer steps than `before`, at a state with the stamp `last`."""
+    if gait.stamp < last:
+        return "the simulation has started again"
+    if not gait.plan_id and gait.mode not in (Mode.WALKING, Mode.STOPPING):  # it has followed no plan yet
+        return "whole_body_controller has restarted"
+    return (
+        f"the robot walks a plan that counts its steps anew, {gait.footstep_index} after {before}: "
+        "plans for one walk continue the count"
+    )

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from . import messages
+
+Value = TypeVar("Value")
+
+UNANSWERED = "steps without set-points"
+"""The key of the simulator's diagnostics that counts them: a run with any is not reproducible."""
 
 _PAUSE = 1.0  # s of real time between two lines about the same kind
 
@@ -36,6 +41,14 @@ class Health:
                 self._said[kind] = now
                 self._logger.warning(f"{kind} refused ({self.counts[kind]} so far): {problem}")
         return not problem
+
+    def read(self, kind: str, topic: str, reader: Callable[..., Value], *message: Any) -> Value | None:
+        """Read a message; None if the reader raises ValueError, which is a refusal like any other."""
+        try:
+            return reader(*message)
+        except ValueError as error:
+            self.takes(kind, f"{topic}: {error}")
+            return None
 
     def report(
         self, stamp: int, problem: str = "", others: Mapping[str, int] | None = None

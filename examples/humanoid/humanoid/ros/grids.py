@@ -32,7 +32,10 @@ def read_occupancy_grid(message: OccupancyGrid) -> Grid:
     cells = np.array(message.data, dtype=np.int8)
     if cells.size != rows * columns or not message.info.resolution > 0:
         raise ValueError(f"{cells.size} cells are no map of {columns} x {rows}")
-    x, y, yaw = (float(part) for part in messages.planar(message.info.origin))
+    try:
+        x, y, yaw = messages.place_of(message.info.origin)
+    except ValueError as error:
+        raise ValueError(f"its origin {error}") from None
     if abs(yaw) > 1e-6:
         raise ValueError("the map is turned against its frame")
     return Grid(float(message.info.resolution), x, y, cells.reshape(rows, columns))

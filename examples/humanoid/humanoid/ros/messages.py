@@ -17,6 +17,7 @@ from humanoid_interfaces.msg import FootstepPlan as FootstepPlanMessage
 from humanoid_interfaces.msg import GaitState as GaitStateMessage
 from humanoid_interfaces.msg import Stance as StanceMessage
 from nav_msgs.msg import Odometry as OdometryMessage
+from sensor_msgs.msg import BatteryState
 from sensor_msgs.msg import Imu as ImuMessage
 from sensor_msgs.msg import JointState as JointStateMessage
 from std_msgs.msg import Float64MultiArray, Header, MultiArrayDimension
@@ -43,6 +44,7 @@ from ..data import (
 )
 from ..robot import table
 from ..robot.body import OURS, Body
+from ..simulation.battery import BatteryReading
 from ..spatial import Array
 
 Kind = TypeVar("Kind", bound=IntEnum)
@@ -50,6 +52,10 @@ Kind = TypeVar("Kind", bound=IntEnum)
 _STAMP = "stamp"
 _SQUAT = "squat"
 _TEXT = 255  # maximum length of a reason
+_FAR = 1e4  # m
+_MANY = 2**31
+_VOLTS = 1000.0
+_NOT_FINITE = "holds a number that is not finite"
 
 
 def time_of(stamp: int) -> Time:
@@ -102,6 +108,18 @@ def planar_pose(x: float, y: float, yaw: float) -> Pose:
     half = float(yaw) / 2
     orientation = Quaternion(z=math.sin(half), w=math.cos(half))
     return Pose(position=Point(x=float(x), y=float(y)), orientation=orientation)
+
+
+def place_of(pose: Any) -> tuple[float, float, float]:
+    """(x, y, yaw) of a Pose. Raises ValueError if it is nowhere on this floor."""
+    x, y, yaw = planar(pose).tolist()
+    if not (abs(x) <= _FAR and abs(y) <= _FAR and math.isfinite(yaw)):
+        raise ValueError(_beyond(x, y, yaw))
+    return x, y, yaw
+
+
+def _beyond(*numbers: float) -> str:
+    return _NOT_FINITE if not all(map(math.isfinite, numbers)) else f"is more than {_FAR:g} m away"
 
 
 def planar(pose: Any) -> Array:
@@ -257,13 +275,15 @@ def read_footstep_plan(message: FootstepPlanMessage) -> FootstepPlan:
     """From /footsteps/plan and /footsteps/upcoming. Raises ValueError for a step that no leg can take."""
     steps = []
     for number, step in enumerate(message.steps, 1):
-        x, y, yaw = (float(part) for part in planar(step))
+        x, y, yaw = planar(step).tolist()
         if step.leg not in (Leg.LEFT, Leg.RIGHT):
             raise ValueError(f"step {number} names no leg")
-        if not all(map(math.isfinite, (x, y, yaw))):
-            raise ValueError(f"step {number} holds a number that is not finite")
+        if not (abs(x) <= _FAR and abs(y) <= _FAR and math.isfinite(yaw)):
+            raise ValueError(f"step {number} {_beyond(x, y, yaw)}")
+        check_count(f"the index of step {number}", step.index)
         time = nanoseconds(step.step_time) / SECOND
         steps.append(Footstep(int(step.index), Leg(step.leg), x, y, yaw, time or STEP_TIME))
+    check_count("plan_id", message.plan_id)
     x, y, yaw = (float(part) for part in planar(message.goal))
     return FootstepPlan(int(message.plan_id), tuple(steps), (x, y, yaw), nanoseconds(message.header.stamp))
 
@@ -277,8 +297,14 @@ def stance(value: Stance, stamp: int) -> StanceMessage:
 
 
 def read_stance(message: StanceMessage) -> Stance:
-    """The places of the soles."""
-    return Stance(_known(Support, message.support), (planar(message.left_sole), planar(message.right_sole)))
+    """The places of the soles. Raises ValueError if they are nowhere on this floor."""
+    feet = []
+    for side, pose in (("left", message.left_sole), ("right", message.right_sole)):
+        try:
+            feet.append(np.array(place_of(pose)))
+        except ValueError as error:
+            raise ValueError(f"the {side} sole {error}") from None
+    return Stance(_known(Support, message.support), (feet[0], feet[1]))
 
 
 def gait_state(state: GaitState) -> GaitStateMessage:
@@ -295,11 +321,13 @@ def gait_state(state: GaitState) -> GaitStateMessage:
 
 
 def read_gait_state(message: GaitStateMessage) -> GaitState:
-    """From /gait_state."""
+    """From /gait_state. Raises ValueError for values that no controller reports."""
+    check_count("plan_id", message.plan_id)
+    check_count("footstep_index", message.footstep_index)
     return GaitState(
         nanoseconds(message.header.stamp),
         _known(Mode, message.mode),
-        message.reason,
+        printable(message.reason),
         read_stance(message.stance),
         int(message.plan_id),
         int(message.footstep_index),
@@ -346,7 +374,29 @@ def emergency_stop(status: EmergencyStop) -> EmergencyStopMessage:
 def read_emergency_stop(message: EmergencyStopMessage) -> EmergencyStop:
     """From /emergency_stop."""
     stamp = nanoseconds(message.header.stamp)
-    return EmergencyStop(message.active, _known(Cause, message.cause), message.source, message.reason, stamp)
+    source, reason = printable(message.source), printable(message.reason)
+    return EmergencyStop(message.active, _known(Cause, message.cause), source, reason, stamp)
+
+
+def printable(text: str) -> str:
+    """Text of others for a terminal: what would move its cursor, or change its colours, is written out."""
+    return text if text.isprintable() else "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+
+
+def read_battery_state(message: BatteryState) -> BatteryReading:
+    """From /battery_state. Raises ValueError for a battery that cannot be."""
+    if not 0.0 <= message.percentage <= 1.0:
+        raise ValueError(f"the charge is {message.percentage:g}, and must be from 0 to 1")
+    if not 0.0 < message.voltage < _VOLTS:
+        raise ValueError(f"{message.voltage:g} V is not plausible")
+    stamp = nanoseconds(message.header.stamp)
+    return BatteryReading(stamp, message.voltage, message.current, message.percentage, message.temperature)
+
+
+def check_count(name: str, value: int) -> None:
+    """Raise ValueError for a number that nobody has counted to: the next one would not fit into a field."""
+    if value >= _MANY:
+        raise ValueError(f"{name} is {value}, which is not plausible")
 
 
 def _known(kind: type[Kind], value: int) -> Kind:

@@ -7,9 +7,13 @@ from collections import deque
 from collections.abc import Iterator
 from typing import Any, Generic, TypeVar
 
+from ..data import SECOND
+
 Reading = TypeVar("Reading")
 
 _KEPT = 4
+_LATE = 20_000_000  # ns by which the reading of one topic is merely late
+_FAR_AHEAD = 1_000_000_000  # ns: sensors are never silent for so long
 
 
 class Recent(Generic[Reading]):
@@ -17,15 +21,19 @@ class Recent(Generic[Reading]):
 
     def __init__(self) -> None:
         self._readings: dict[int, Reading] = {}
-        self._older: tuple[int, Reading] | None = None  # the last reading, if it was older than the newest
+        self._leap: tuple[int, Reading] | None = None  # the last reading, if time would have leapt with it
         self.newest = -1
 
     def put(self, stamp: int, reading: Reading) -> bool:
-        """Keep a reading; False if it is older than the newest: it is late, or time has gone back."""
-        if stamp < self.newest:
-            self._older = stamp, reading
+        """Keep a reading; False if it is older than the newest, or far ahead of it.
+
+        Then it is late, its stamp is wrong, or time has leapt: see `leapt`.
+        """
+        ahead = stamp - self.newest
+        if ahead < 0 or (ahead > _FAR_AHEAD and self.newest >= 0):
+            self._leap = stamp, reading
             return False
-        self._older = None
+        self._leap = None
         self.newest = stamp
         self._readings[stamp] = reading
         if len(self._readings) > _KEPT:
@@ -33,15 +41,15 @@ class Recent(Generic[Reading]):
         return True
 
     @property
-    def older(self) -> int | None:
-        """The moment of the last reading, if it was older than the newest."""
-        return None if self._older is None else self._older[0]
+    def last(self) -> int:
+        """The moment of the last reading, whether it was kept or not."""
+        return self.newest if self._leap is None else self._leap[0]
 
-    def rewind(self) -> None:
-        """Forget everything except the older reading that arrived last."""
-        assert self._older is not None
-        self.newest, reading = self._older
-        self._readings, self._older = {self.newest: reading}, None
+    def leap(self) -> None:
+        """Keep the reading with which time leaps, and forget all others."""
+        if self._leap is not None:
+            self.newest, reading = self._leap
+            self._readings, self._leap = {self.newest: reading}, None
 
     def at(self, stamp: int) -> Reading:
         """The reading of a moment. Raises KeyError if it is not among the last few."""
@@ -76,8 +84,8 @@ class History(Generic[Reading]):
         return len(self._readings)
 
     def put(self, stamp: int, reading: Reading) -> None:
-        """Keep a reading; if time has gone back, forget the others."""
-        if self._readings and stamp < self._readings[-1][0]:
+        """Keep a reading; if time has leapt, forget the others."""
+        if self._readings and not 0 <= stamp - self._readings[-1][0] <= _FAR_AHEAD:
             self._readings.clear()
         self._readings.append((stamp, reading))
 
@@ -87,17 +95,26 @@ class History(Generic[Reading]):
         return None if best is None or abs(best[0] - stamp) > most else best[1]
 
 
-def rewound(*topics: Recent[Any]) -> bool:
-    """Whether time has gone back; all topics must say so, and then earlier readings are forgotten.
+def leapt(*topics: Recent[Any]) -> bool:
+    """Go where time has leapt if the last reading of each topic is of that moment; True if it has gone back.
 
-    If only one of them says so, its reading is late or belongs to another publisher.
+    If topics disagree, a reading is late, has a wrong stamp, or belongs to another publisher. If only some of
+    them leap, time is where the others are: the stamps of those were wrong.
     """
-    moments = {topic.older for topic in topics}
-    if None in moments or len(moments) > 1:
+    if len({topic.last for topic in topics}) > 1:
         return False
-    for topic in topics:
-        topic.rewind()
-    return True
+    distances = [topic.last - topic.newest for topic in topics]
+    back = all(distance < 0 for distance in distances)
+    if back or all(abs(distance) > _LATE for distance in distances if distance):
+        for topic in topics:
+            topic.leap()
+    return back
+
+
+def misdated(name: str, stamp: int, topic: Recent[Any]) -> str:
+    """Words for a reading that was not kept, with its stamp [ns]."""
+    seconds = (stamp - topic.newest) / SECOND
+    return f"{name} is {abs(seconds):.3f} s {'newer' if seconds > 0 else 'older'} than the one before"
 
 
 def newest_of_all(first: Recent[Any], *others: Recent[Any], after: int = -1) -> int | None:

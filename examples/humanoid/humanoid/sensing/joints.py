@@ -13,13 +13,12 @@ from ..spatial import Array
 class JointCollector:
     """Collects the values of joints; a round is over when every driver has reported since the last one.
 
-    `joints` are the names in the order that is wanted; if there are none, it is the order in which they are
-    first reported. A driver that has been silent for `stale_after` [ns] holds up no round.
+    `joints` are the names in the order that is wanted. A driver that has been silent for `stale_after` [ns]
+    holds up no round.
     """
 
-    def __init__(self, joints: Sequence[str] = (), stale_after: int = SECOND // 2) -> None:
+    def __init__(self, joints: Sequence[str], stale_after: int = SECOND // 2) -> None:
         self.names = list(joints)
-        self._is_open = not joints  # to joints that nobody has named
         self._stale_after = stale_after
         self._places = {name: place for place, name in enumerate(self.names)}
         self._values = np.full((3, len(self.names)), np.nan)  # position, velocity, effort
@@ -61,13 +60,8 @@ class JointCollector:
     def _places_of(self, names: Sequence[str]) -> list[int] | slice:
         if names == self.names:
             return slice(None)  # one driver for all, as in the simulation
-        unknown = [name for name in names if name not in self._places]
-        if unknown and not self._is_open:
-            raise ValueError(f"nobody has asked for the joint '{unknown[0]}'")
-        for name in unknown:
-            self._places[name] = len(self.names)
-            self.names.append(name)
-        if unknown:
-            self._values = np.hstack([self._values, np.full((3, len(unknown)), np.nan)])
-            self._reported = np.append(self._reported, np.full(len(unknown), -1, dtype=np.int64))
+        if unknown := [name for name in names if name not in self._places]:
+            raise ValueError(f"the robot has no joint {unknown[0]!r}")
+        if not names:
+            raise ValueError("it names no joint")
         return [self._places[name] for name in names]

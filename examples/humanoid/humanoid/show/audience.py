@@ -58,6 +58,7 @@ class Audience(Node):
             self._waiting = [event_of(text) for text in texts if text]
         except ValueError as error:
             raise AudienceError(str(error)) from None
+        self._pressed = False  # the emergency stop
         self._due = 0  # events whose time is set, but has not come
         self._push = self.create_publisher(WrenchStamped, "/humanoid_simulator/push", 10)
         self._move = self.create_publisher(ObstacleMotion, "/humanoid_simulator/move_obstacle", 10)
@@ -72,6 +73,12 @@ class Audience(Node):
     def is_over(self) -> bool:
         """Whether everything has happened."""
         return not self._waiting and not self._due
+
+    def let_go(self) -> None:
+        """Release the emergency stop if the last event about it was a press: nobody else would."""
+        if self._pressed:
+            self._pressed = False
+            self._button.call_async(SetBool.Request(data=False))
 
     def play(self, texts: list[str], after: int) -> None:
         """Play other events instead: times count from now, tasks from the one after number `after`."""
@@ -108,7 +115,8 @@ class Audience(Node):
             case "push":
                 self._push.publish(push_of(*event.numbers))
             case "press" | "release":
-                self._button.call_async(SetBool.Request(data=event.act == "press"))
+                self._pressed = event.act == "press"
+                self._button.call_async(SetBool.Request(data=self._pressed))
             case "say":
                 self._typed.publish(String(data=event.words))
             case "speak":

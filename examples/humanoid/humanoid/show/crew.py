@@ -68,6 +68,7 @@ MANAGED = ("camera_driver", "joint_controller")
 
 WITH_BODY = (
     SIMULATOR,
+    "joint_state_publisher",
     "imu_fusion",
     "whole_body_controller",
     "joint_controller",

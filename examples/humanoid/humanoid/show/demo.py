@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import math
-import secrets
 import signal
 import subprocess
 import sys
@@ -26,6 +25,7 @@ from rclpy.signals import SignalHandlerOptions
 from ..data import Mode
 from ..robot.external import load_model
 from ..robot.joint_map import ModelError
+from ..ros.messages import printable
 from ..simulation.rendering import RenderingError, check
 from . import crew, parts, report
 from .audience import Audience, AudienceError
@@ -39,7 +39,6 @@ from .window import Window, WindowError, display
 _LIMIT = 600.0  # s of real time for a scenario
 _TURN = 0.1  # s of real time between checks of windows and processes
 _DISCOVERY = 0.7  # s that DDS has to find another robot
-_TOKEN = 18  # bytes of the page's token
 _INTERRUPTED = "interrupted"
 _CODE_INTERRUPTED = 130  # as for all commands of ifgen
 _CODE_TERMINATED = 143
@@ -72,7 +71,7 @@ class Options:
     transport: str = "local"
     record: Path | None = None
     web: int | None = None  # the port; 0: any free one
-    host: str = ""  # another address than this machine's own; who has the page's token may come
+    host: str = ""  # another address than this machine's own
     window: bool = False  # if there is a display
     realtime: bool = False
     seed: int = 0
@@ -137,6 +136,7 @@ class _Show:
         self._executor: Executor = SingleThreadedExecutor()
         overrides = [Parameter(k, value=v) for k, v in self._scenario.get("audience", {}).items()]
         audience = Audience(parameter_overrides=[Parameter("use_sim_time", value=True), *overrides])
+        self._audience = audience
         self._director = Director(self._say, lambda: audience.is_over)
         self._recorder = self._record_to(options.record) if options.record else None
         self._window = self._open_window() if options.window and display() else None
@@ -217,8 +217,8 @@ class _Show:
         end = time.monotonic() + (math.inf if self._options.idle else _LIMIT)
         while time.monotonic() < end:
             self._executor.spin_once(timeout_sec=_TURN)
-            if self._started is None and self._director.begun is not None:
-                self._started = time.monotonic()
+            if (self._started is None) is not (self._director.begun is None):
+                self._started = None if self._director.begun is None else time.monotonic()
             self._line.show(self._director, self._started or time.monotonic())
             for process in self._processes:
                 if process.poll() is not None:
@@ -255,10 +255,11 @@ class _Show:
 
     def _say(self, what: str) -> None:
         self._line.clear()
-        print(f"{self._director.now:7.2f} s  {what}", flush=True)
+        print(f"{self._director.now:7.2f} s  {printable(what)}", flush=True)
 
     def _stay(self) -> None:
-        print("the page stays open: Ctrl-C ends")
+        print("the page stays open: Ctrl-C ends", flush=True)
+        self._audience.let_go()
         with contextlib.suppress(KeyboardInterrupt):
             while True:
                 self._executor.spin_once(timeout_sec=_TURN)
@@ -279,10 +280,16 @@ class _Show:
     def _summary(self, outcome: str) -> None:
         director = self._director
         simulated = director.now - (director.begun or 0.0)
-        real = time.monotonic() - (self._started or time.monotonic())
-        rows = report.summary(self._name, outcome, simulated, max(real, 1e-3), director.score)
+        real = 0.0 if self._started is None else time.monotonic() - self._started
+        rows = report.summary(self._name, outcome, simulated, real, director.score)
         if director.is_over and self._options.transport == "local":
-            rows["state hash"] = director.state_hash[:16]
+            repeats = director.repeats and not self._without
+            rows["state hash"] = (
+                director.state_hash[:16]
+                if repeats
+                else "not reproducible: "
+                + ("nodes outside this process" if director.repeats else "time went on without set-points")
+            )
         report.show(rows)
 
     def _parameters(self) -> dict[str, dict[str, Any]]:
@@ -312,9 +319,8 @@ def _serve(options: Options, audience: Audience) -> Node:
     from .web.view_node import WebView
 
     host, port = options.host or LOOPBACK, options.web or 0
-    token = secrets.token_urlsafe(_TOKEN) if options.host else ""
     try:
-        view = WebView(port, host, token, audience, "" if options.idle else options.scenario)
+        view = WebView(port, host, audience, "" if options.idle else options.scenario)
     except OSError as error:
         sys.exit(f"error: {host}:{port}: {error.strerror}; choose another port with --port, or 0 for any")
     print(f"watch at {view.page.url}", flush=True)

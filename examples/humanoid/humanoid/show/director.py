@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 from humanoid_interfaces.msg import EmergencyStop, FootstepPlan, GaitState, ObstacleTouch, Stance, TaskStatus
 from nav_msgs.msg import Odometry
@@ -21,6 +23,7 @@ from ..data import SECOND, Footstep, Mode
 from ..planning.tasks import task_of
 from ..robot.obstacles import Solid
 from ..ros import messages
+from ..ros.diagnostics import UNANSWERED
 from ..ros.markers import read_obstacle_markers
 from ..spatial import Array
 from .audience import PUSH_TIME
@@ -42,6 +45,7 @@ class Score:
 
     steps: int = 0
     distance: float = 0.0  # of the middle between the soles, from step to step
+    walking: float = 0.0  # in mode WALKING
     falls: int = 0
     foot_errors: list[float] = field(default_factory=list)
     goal_errors: list[float] = field(default_factory=list)
@@ -51,6 +55,11 @@ class Score:
     touches: int = 0  # of obstacles by links of the robot
     stop_times: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)  # tasks that failed though nobody stopped the robot
+
+    @property
+    def speed(self) -> float:
+        """The mean speed of walks [m/s]."""
+        return self.distance / self.walking if self.walking else 0.0
 
     @property
     def foot_error(self) -> float:
@@ -90,12 +99,16 @@ class Director(Node):
         self._index: int | None = None
         self._end = math.inf
         self._digest = hashlib.sha256()
+        self._unanswered = 0  # steps of the simulator
+        self._seen_at: int | None = None  # stamp of the last gait state
+        self._true_at = 0  # stamp of the last true pose
         topics: tuple[tuple[type[Any], str, QoSProfile | int, Callable[[Any], None]], ...] = (
             (TaskStatus, "/high_level_task_manager/task", _TASKS, self._on_task),
             (GaitState, "/gait_state", _LATCHED, self._on_gait),
             (FootstepPlan, "/footsteps/upcoming", _LATCHED, self._on_plan),
             (EmergencyStop, "/emergency_stop", _LATCHED, self._on_stop),
             (WrenchStamped, "/humanoid_simulator/push", 10, self._on_push),
+            (DiagnosticArray, "/diagnostics", 10, self._on_diagnostics),
             (MarkerArray, "/humanoid_simulator/obstacles", _LATCHED, self._on_obstacles),
             (ObstacleTouch, "/humanoid_simulator/touches", 10, self._on_touch),
             (Stance, "/humanoid_simulator/ground_truth/stance", _LATEST, self._on_truth),
@@ -111,6 +124,11 @@ class Director(Node):
         return self._digest.hexdigest()
 
     @property
+    def repeats(self) -> bool:
+        """Whether another run with the same seed is the same: time has always waited for set-points."""
+        return not self._unanswered
+
+    @property
     def now(self) -> float:
         """Simulated seconds."""
         return float(self.get_clock().now().nanoseconds) / SECOND
@@ -124,6 +142,16 @@ class Director(Node):
         """True distance of the middle between the soles from a point [m]; infinite if not published."""
         middle = self._middle_now()
         return math.inf if middle is None else math.hypot(middle[0] - x, middle[1] - y)
+
+    def _begin_anew(self) -> None:
+        """Forget the run before: the simulator has started again."""
+        self.score = Score(obstacles=self.score.obstacles)
+        self.begun, self._end = None, math.inf
+        self._planned.clear()
+        self._middle = self._index = self._seen_at = self._base = None
+        self._height = 0.0
+        self._digest = hashlib.sha256()
+        self._say("time starts again")
 
     def _look(self) -> None:
         """Note the end: the last task is done, and nobody has plans. A robot that lies has no future."""
@@ -185,6 +213,11 @@ class Director(Node):
         degrees = math.degrees(math.atan2(y, x)) % 360
         self._say(f"pushed with {math.hypot(x, y):g} N s towards {degrees:.0f} deg")
 
+    def _on_diagnostics(self, message: DiagnosticArray) -> None:
+        for value in (value for status in message.status for value in status.values):
+            if value.key == UNANSWERED and value.value.isdecimal():
+                self._unanswered = int(value.value)
+
     def _on_obstacles(self, message: MarkerArray) -> None:
         solids = {solid.name: solid for solid in read_obstacle_markers(message)}
         for name, solid in solids.items():
@@ -202,12 +235,18 @@ class Director(Node):
         self._is_stopped = message.active
 
     def _on_gait(self, message: GaitState) -> None:
-        self.mode = Mode(message.mode)
+        try:
+            state = messages.read_gait_state(message)
+        except ValueError:
+            return  # whoever acts on it says so
+        if self.mode is Mode.WALKING and self._seen_at is not None:
+            self.score.walking += max(state.stamp - self._seen_at, 0) / SECOND
+        self.mode, self._seen_at = state.mode, state.stamp
         fallen = self.mode is Mode.FALLEN or self._lies()
         if fallen and not self.fallen:
             self.score.falls += 1
-            self._say("fallen")
-        before, self._index = self._index, int(message.footstep_index)
+            self._say("fallen: /humanoid_simulator/reset, or Restart on the page, stands it up")
+        before, self._index = self._index, state.footstep_index
         self.fallen = fallen
         if before is not None and self._index == before + 1:
             self._landed(before)
@@ -231,15 +270,23 @@ class Director(Node):
         return self._base is not None and bool(self._base[2] < _LYING * self._height)
 
     def _on_plan(self, message: FootstepPlan) -> None:
-        self._planned.update((step.index, step) for step in messages.read_footstep_plan(message).steps)
+        with contextlib.suppress(ValueError):  # whoever would walk it says so
+            self._planned.update((step.index, step) for step in messages.read_footstep_plan(message).steps)
 
     def _on_truth(self, message: Stance) -> None:
-        self._truth = messages.read_stance(message).feet
+        try:
+            self._truth = messages.read_stance(message).feet
+        except ValueError:
+            return
         if self._middle is None:
             self._middle = self._middle_now()
 
     def _on_odometry(self, message: Odometry) -> None:
-        if messages.nanoseconds(message.header.stamp) / SECOND <= self._end:
+        stamp = messages.nanoseconds(message.header.stamp)
+        if stamp < self._true_at:
+            self._begin_anew()
+        self._true_at = stamp
+        if stamp / SECOND <= self._end:
             self._digest.update(serialize_message(message))
         self._base = messages.numbers(message.pose.pose.position)
         self._height = max(self._height, float(self._base[2]))

@@ -14,6 +14,7 @@ import numpy as np
 from ..data import SECOND, Footstep, Mode
 from ..robot.model import HumanoidModel
 from ..robot.obstacles import Solid
+from ..robot.scene import BOARD, BOARD_BODIES, FACE_POSITION
 from ..simulation.rendering import Picture, draw_footsteps, draw_solids, renderer
 from ..spatial import Array, rotation_z
 from .pictures import write_line
@@ -34,6 +35,9 @@ _GOAL_RADIUS, _POINTER = 0.16, 0.30  # m
 _PUSH = np.array([0.95, 0.12, 0.20, 1.0], dtype=np.float32)
 _ARROW = 0.012  # m for each N
 _CHEST = 1.05  # m, where arrows end
+_BROAD = 0.25  # m, half the robot's width with its arms
+_CLEAR = 0.6  # m that stay free beside the line of sight where it begins
+_BEFORE = 0.85  # of the way to the robot: what is farther away stands beside it
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +106,9 @@ class Film:
         self._data = mujoco.MjData(self._mj)
         self._renderer = renderer(self._mj, width, height)
         self._camera = mujoco.MjvCamera()
+        # The scene of somebody else's robot has none.
+        bodies = [mujoco.mj_name2id(self._mj, mujoco.mjtObj.mjOBJ_BODY, name) for name in BOARD_BODIES]
+        self._board = np.flatnonzero(np.isin(self._mj.geom_bodyid, bodies))
 
     def draw(self, shot: Shot, view: View, note: str) -> Picture:
         """A picture with a line of text: time, what the robot does, and the note at the right."""
@@ -109,6 +116,8 @@ class Film:
         camera.distance, camera.elevation = _ABOVE if shot.solids else (_DISTANCE, _ELEVATION)
         camera.azimuth = view.azimuth
         camera.lookat[:] = view.x, view.y, _HEIGHT
+        eye = _eye(camera)
+        self._show_board(not _hides(eye, camera.lookat, FACE_POSITION[:2], BOARD))
         _shine(self._mj, view.x, view.y)
         self._data.qpos[:] = shot.posture
         mujoco.mj_forward(self._mj, self._data)
@@ -125,9 +134,30 @@ class Film:
         said = f"{shot.stamp / SECOND:5.1f} s   {mode}{speed}{', pushed' if shot.push else ''}"
         return write_line(np.array(self._renderer.render()), said, note)
 
+    def _show_board(self, shown: bool) -> None:
+        """Show the board with the face, or do not draw it."""
+        self._mj.geom_rgba[self._board, 3] = float(shown)
+
     def close(self) -> None:
         """Release OpenGL; otherwise Python complains when it ends."""
         self._renderer.close()
+
+
+def _eye(camera: Any) -> Array:
+    """Where a camera is (3,)."""
+    turn, lift = math.radians(camera.azimuth), math.radians(camera.elevation)
+    way = np.array([math.cos(lift) * math.cos(turn), math.cos(lift) * math.sin(turn), math.sin(lift)])
+    eye: Array = np.asarray(camera.lookat) - camera.distance * way
+    return eye
+
+
+def _hides(eye: Array, seen: Array, place: Sequence[float], radius: float) -> bool:
+    """Whether a thing stands before the robot, or so near to the camera that it fills the picture."""
+    way = np.asarray(seen[:2]) - eye[:2]
+    share = float((np.asarray(place) - eye[:2]) @ way) / float(way @ way)
+    beside = float(np.linalg.norm(eye[:2] + share * way - np.asarray(place)))
+    room = radius + _BROAD + (1 - share) * _CLEAR
+    return -0.2 < share < _BEFORE and beside < room
 
 
 def _lit(original: Any, width: int, height: int) -> Any:

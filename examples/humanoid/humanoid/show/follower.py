@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from abc import ABC, abstractmethod
 
 import numpy as np
@@ -48,7 +49,8 @@ class Follower(Node, ABC):
         """Use a posture, MuJoCo's `qpos` (nq,), and the next footsteps."""
 
     def _on_joints(self, message: JointState) -> None:
-        self._joints = np.array(message.position)
+        if len(message.position) == len(self._model.qpos):
+            self._joints = np.array(message.position)
 
     def _on_odometry(self, message: Odometry) -> None:
         stamp = messages.nanoseconds(message.header.stamp)
@@ -62,7 +64,8 @@ class Follower(Node, ABC):
         self.take(stamp, posture, self._steps)
 
     def _on_plan(self, message: FootstepPlan) -> None:
-        self._steps = messages.read_footstep_plan(message).steps
+        with contextlib.suppress(ValueError):  # whoever would walk it says so
+            self._steps = messages.read_footstep_plan(message).steps
 
     def _on_obstacles(self, message: MarkerArray) -> None:
         self.solids = read_obstacle_markers(message)

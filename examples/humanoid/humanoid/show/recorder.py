@@ -99,7 +99,7 @@ class Recorder(Follower):
             save_gif(list(drawn), self._path, frame_time)
 
     def _on_gait(self, message: GaitState) -> None:
-        self._mode = Mode(message.mode)
+        self._mode = Mode(message.mode) if message.mode in list(Mode) else Mode.UNKNOWN
 
     def _on_task(self, message: TaskStatus) -> None:
         walks = message.state == TaskStatus.STATE_RUNNING and message.words.startswith("walk")

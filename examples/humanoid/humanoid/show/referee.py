@@ -15,6 +15,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.parameter import Parameter
 from rclpy.utilities import remove_ros_args
 
+from ..ros.messages import printable
 from ..ros.running import until_shutdown
 from . import report
 from .audience import Audience, AudienceError
@@ -39,7 +40,7 @@ def main(args: list[str] | None = None) -> int:
         rclpy.try_shutdown()
         sys.exit(f"error: {error}")
     director = Director(
-        lambda what: print(f"{director.now:7.2f} s  {what}", flush=True), lambda: audience.is_over
+        lambda what: print(f"{director.now:7.2f} s  {printable(what)}", flush=True), lambda: audience.is_over
     )
     executor = SingleThreadedExecutor()
     executor.add_node(audience)
@@ -50,12 +51,12 @@ def main(args: list[str] | None = None) -> int:
             executor.spin_once(timeout_sec=_TURN)
             if started is None and director.begun is not None:
                 started = time.monotonic()
-    real = time.monotonic() - (started or time.monotonic())
+    real = 0.0 if started is None else time.monotonic() - started
     failures = director.score.failures + ([] if director.is_over else ["interrupted"])
     simulated = director.now - (director.begun or 0.0)
     outcome = "; ".join(dict.fromkeys(failures)) or "done"
     name = Path(names[0]).stem
-    report.show(report.summary(name, outcome, simulated, max(real, 1e-3), director.score))
+    report.show(report.summary(name, outcome, simulated, real, director.score))
     sys.stdout.flush()
     audience.destroy_node()
     director.destroy_node()

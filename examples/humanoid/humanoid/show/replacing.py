@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+import traceback
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -45,7 +46,11 @@ def node_class(place: str) -> type[Any]:
     if len(own) != 1:
         found = f"it has {', '.join(own)}; name one: {where}:{next(iter(own))}" if own else "it has none"
         raise ReplacementError(f"{where}: expected one class that derives from rclpy's Node; {found}")
-    return next(iter(own.values()))
+    (found_class,) = own.values()
+    if missing := sorted(getattr(found_class, "__abstractmethods__", ())):
+        lacks = f"{where}: {found_class.__name__} lacks {', '.join(missing)}"
+        raise ReplacementError(f"{lacks}: define each of them, even if it does nothing")
+    return found_class
 
 
 def _loaded(where: str) -> ModuleType:
@@ -61,5 +66,13 @@ def _loaded(where: str) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module
     sys.path.insert(0, str(path.parent))  # as when Python runs the file
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        lines = [
+            frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
+        ]
+        line = error.lineno if isinstance(error, SyntaxError) else lines[-1] if lines else None
+        place = f"{where}, line {line}" if line else where
+        raise ReplacementError(f"{place}: {type(error).__name__}: {error}") from None
     return module

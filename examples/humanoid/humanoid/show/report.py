@@ -60,15 +60,17 @@ class ProgressLine:
 
 
 def summary(scenario: str, outcome: str, simulated: float, real: float, score: Score) -> dict[str, str]:
-    """The rows of the summary; times in seconds."""
+    """The rows of the summary; times in seconds, no time without a factor."""
     rows = {
         "scenario": scenario,
         "outcome": outcome,
         "simulated": f"{simulated:.1f} s",
-        "real-time factor": f"{simulated / real:.2f}",
+        "real-time factor": f"{simulated / real:.2f}" if real else "",
         "steps": str(score.steps),
         "distance": f"{score.distance:.2f} m",
+        "speed": f"{score.speed:.2f} m/s walking" if score.walking else "",
     }
+    rows = {name: value for name, value in rows.items() if value}
     if score.foot_errors:
         rows["foot error"] = f"{score.foot_error * 1e3:.1f} mm rms"
     if score.goal_errors:

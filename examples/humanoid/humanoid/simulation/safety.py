@@ -60,25 +60,9 @@ class CommandGate:
     def accept(self, command: JointCommand, now: int) -> bool:
         """Whether the command is good; if so, it becomes the servos' set-points."""
         position = np.asarray(command.position, dtype=float)
-        if position.shape != self._lower.shape:
-            self.refusals.wrong_size += 1
-            self.reason = f"a command needs {self._lower.size} positions, this one has {position.size}"
-        elif not np.isfinite(position).all():
-            self.refusals.not_finite += 1
-            self.reason = (
-                f"position {int(np.argmin(np.isfinite(position)))} of the command is not a finite number"
-            )
-        elif now - command.stamp > LATEST:
-            self.refusals.late += 1
-            self.reason = f"the command is {(now - command.stamp) / SECOND:.3f} s late"
-        elif command.stamp > now:
-            self.refusals.late += 1
-            self.reason = clock_problem(command.stamp, now, "the command") or (
-                f"the command is for a tick that is {(command.stamp - now) / SECOND:.3f} s ahead"
-            )
-        elif ((position < self._lower) | (position > self._upper)).any():
-            self.refusals.out_of_range += 1
-            self.reason = "a position of the command is far outside the joint's range"
+        if impossible := self._impossible(position, command.stamp, now):
+            kind, self.reason = impossible
+            setattr(self.refusals, kind, getattr(self.refusals, kind) + 1)
         elif self._has_one(command, now):
             self.refusals.second += 1
             self.reason = "another publisher has already commanded this tick"
@@ -88,6 +72,30 @@ class CommandGate:
             self._answered = command.stamp if command.answers else self._answered
             return True
         return False
+
+    def impossible(self, command: JointCommand, now: int) -> str:
+        """The reason why no servo can follow a command, or ""; nothing is counted."""
+        _, reason = self._impossible(command.position, command.stamp, now) or ("", "")
+        return reason
+
+    def _impossible(self, position: Array, stamp: int, now: int) -> tuple[str, str] | None:
+        """A field of `Refusals`, and the reason, if no servo can follow these positions now."""
+        if position.shape != self._lower.shape:
+            return (
+                "wrong_size",
+                f"a command needs {self._lower.size} positions, this one has {position.size}",
+            )
+        finite = np.isfinite(position)
+        if not finite.all():
+            return "not_finite", f"position {int(np.argmin(finite))} of the command is not a finite number"
+        if now - stamp > LATEST:
+            return "late", f"the command is {(now - stamp) / SECOND:.3f} s late"
+        if stamp > now:
+            ahead = f"the command is for a tick that is {(stamp - now) / SECOND:.3f} s ahead"
+            return "late", clock_problem(stamp, now, "the command") or ahead
+        if ((position < self._lower) | (position > self._upper)).any():
+            return "out_of_range", "a position of the command is far outside the joint's range"
+        return None
 
     def protect(self, setpoints: Array) -> None:
         """Follow these positions (joints,) instead of any command."""

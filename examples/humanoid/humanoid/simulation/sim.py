@@ -82,9 +82,12 @@ class Simulator:
         """Give the servos new set-points; False if the command is refused and the last good one remains."""
         return self.gate.accept(command, self.stamp)
 
-    def protect(self, command: JointCommand) -> None:
-        """Make the servos follow this instead of any command."""
-        self.gate.protect(command.position)
+    def protect(self, command: JointCommand) -> str:
+        """Make the servos follow this instead of any command; returns why they cannot, or ""."""
+        problem = self.gate.impossible(command, self.stamp)
+        if not problem:
+            self.gate.protect(command.position)
+        return problem
 
     def push(self, force: Array, duration: float) -> None:
         """Push the torso with a force (3,) in the world [N] for a time [s], from now on."""

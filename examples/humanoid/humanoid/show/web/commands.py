@@ -32,7 +32,8 @@ _FASTEST = 10.0  # times real time
 _LONGEST = 200  # characters of a text line
 _ROUNDS = 25  # control periods of a single step: 0.1 s
 _NOTICED = 0.3  # s after which all nodes know that time starts again
-_LOGGED = 0.2  # s that a node's log has to explain a refusal
+_LOGGED = 3.0  # s that a node's log has to explain a refusal
+_DEAF = {"dancing", "holding", "fallen", "emergency stop"}  # modes in which nobody obeys a velocity
 _SAID_TO_ROBOT = ("stop", "stop all", "walk home")  # besides tasks
 _NEWEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
@@ -66,6 +67,11 @@ class Commands:
         self._joy = node.create_publisher(Joy, "/joy", _NEWEST)
         self._later: list[tuple[float, Callable[[], None]]] = []
         self._rounds = 0  # control periods that are still to be stepped
+        self._unexplained: list[
+            tuple[float, Answer]
+        ] = []  # rejected goals, and until when their reason is awaited
+        self.mode = ""  # of the robot, as in GaitState, and its reason
+        self.reason = ""
         self.paused = False
         self.speed = 1.0
         self.obstacles: list[str] = []  # their names
@@ -104,9 +110,20 @@ class Commands:
         self._later = [(when, act) for when, act in self._later if when > now]
         for act in due:
             act()
+        self._explain(now)
         if self._rounds and self._step.service_is_ready():
             self._rounds -= 1
             self._step.call_async(Trigger.Request())
+
+    def _explain(self, now: float) -> None:
+        """Answer rejected goals with what the log says about them."""
+        while self._unexplained:
+            until, answer = self._unexplained[0]
+            why = self._why("goal rejected: ")
+            if not why and now < until:
+                return
+            del self._unexplained[0]
+            answer(False, _with_help(why or self.reason or "the log of its server says why"))
 
     def _on_walk(self, asked: Mapping[str, Any], answer: Answer) -> None:
         x, y = _number(asked, "x", _FARTHEST), _number(asked, "y", _FARTHEST)
@@ -145,6 +162,8 @@ class Commands:
         if not isinstance(words, str) or not 0 < len(words.strip()) <= _LONGEST:
             raise Refusal(f"say something, with at most {_LONGEST} characters")
         words = " ".join(words.split())
+        if not words.isprintable():
+            raise Refusal("say letters, not control characters")
         if words not in _SAID_TO_ROBOT:
             try:
                 task_of(words)
@@ -156,6 +175,8 @@ class Commands:
     def _on_drive(self, asked: Mapping[str, Any], answer: Answer) -> None:
         forward, left, turn = (_number(asked, name, 1.0) for name in ("forward", "left", "turn"))
         held = any((forward, left, turn))
+        if held and self.mode in _DEAF:
+            raise Refusal(_with_help(f"it cannot be driven now: {self.reason or f'it is {self.mode}'}"))
         self._joy.publish(Joy(axes=[left, forward, turn], buttons=[0, 0, 0, 0, int(held)]))
         answer(True, "driving" if held else "let go")
 
@@ -249,19 +270,19 @@ class Commands:
             if future.result().accepted:
                 answer(True, done)
             else:  # an action has no words for a refusal, but the log of its server has
-                self._later.append(
-                    (
-                        time.monotonic() + _LOGGED,
-                        lambda: answer(False, self._why("goal rejected: ") or "the goal was rejected"),
-                    )
-                )
+                self._unexplained.append((time.monotonic() + _LOGGED, answer))
 
         client.send_goal_async(goal).add_done_callback(end)
 
 
 def _answered(future: Any, answer: Answer, done: str) -> None:
     response = future.result()
-    answer(response.success, done if response.success else response.message or "refused")
+    answer(response.success, done if response.success else _with_help(response.message or "refused"))
+
+
+def _with_help(why: str) -> str:
+    """A reason, and what to do where only one thing helps."""
+    return f"{why}: Restart stands it up" if "has fallen" in why else why
 
 
 def _number(asked: Mapping[str, Any], name: str, most: float) -> float:

@@ -21,7 +21,7 @@ class Heard:
         self.reading = reading
         self.subscription: Any = None
         self.messages = 0
-        self._new: deque[bytes] = deque(maxlen=None if reading and reading.every else 1)
+        self._new: deque[bytes] = deque(maxlen=1)
 
     def hear(self, data: bytes) -> None:
         """Count a message; only those that are shown will be read."""
@@ -30,7 +30,7 @@ class Heard:
             self._new.append(data)
 
     def take(self) -> list[bytes]:
-        """The messages since the last call: all, or only the newest."""
+        """The newest message, if one has come since the last call."""
         new = list(self._new)
         self._new.clear()
         return new
@@ -60,10 +60,10 @@ class Rates:
             self._counted.popleft()
 
     @property
-    def factor(self) -> float:
-        """Simulated seconds per second since the check before the last one."""
+    def factor(self) -> float | None:
+        """Simulated seconds per second since the check before the last one; None before there was one."""
         if len(self._counted) < 2:
-            return 0.0
+            return None
         before, now = self._counted[-2], self._counted[-1]
         return (now.simulated - before.simulated) / max(now.real - before.real, 1e-3)
 

@@ -69,7 +69,8 @@ export class Panel {
   stop({ active, reason }) {
     this.stopped = active;
     element("banner").hidden = !active;
-    element("banner").textContent = `Emergency stop: ${reason || "no reason given"}`;
+    const help = reason.includes("has fallen") ? ": Restart stands it up" : "";
+    element("banner").textContent = `Emergency stop: ${reason || "no reason given"}${help}`;
     element("stop").textContent = active ? "Release the stop" : "Emergency stop";
   }
 
@@ -82,7 +83,9 @@ export class Panel {
   }
 
   goal(kind, values) {
-    Object.assign(this.goals[kind], values);
+    const old = this.goals[kind];
+    if (values.goal === old.goal) Object.assign(old, values);
+    else if (values.state !== undefined) this.goals[kind] = values; // how far the last one came says nothing of it
     this.showGoals();
   }
 

@@ -48,12 +48,16 @@ class Reading:
     channel: str
     read: Callable[[Any], Any]
     latched: bool = False
-    every: bool = False  # whether each message counts, not only the newest
 
 
 def rounded(*values: float) -> list[float]:
-    """Round to a tenth of a millimetre; JSON has no value for numbers that are not finite."""
-    return [round(value, 4) if math.isfinite(value) else 0.0 for value in values]
+    """Round to a tenth of a millimetre."""
+    return [_number(value, 4) for value in values]
+
+
+def _number(value: float, digits: int) -> float:
+    """A rounded number; JSON has no value for those that are not finite."""
+    return round(value, digits) if math.isfinite(value) else 0.0
 
 
 def yaw_of(q: Any) -> float:
@@ -102,7 +106,7 @@ def _balance(message: BalanceState) -> dict[str, Any]:
 
 def _battery(message: BatteryStatus) -> dict[str, Any]:
     level = _constant(BatteryStatus, "LEVEL_", message.level)
-    return {"charge": round(message.charge, 2), "level": level}
+    return {"charge": _number(message.charge, 2), "level": level}
 
 
 def _stop(message: EmergencyStop) -> dict[str, Any]:
@@ -122,7 +126,8 @@ def _task(message: TaskStatus) -> dict[str, Any]:
 def _walked(message: Any) -> dict[str, Any]:
     feedback = message.feedback
     return {
-        "left": round(feedback.distance_left, 2),
+        "goal": _id(message.goal_id),
+        "left": _number(feedback.distance_left, 2),
         "taken": feedback.steps_taken,
         "steps": feedback.steps_taken + feedback.steps_left,
         "replanning": feedback.replanning,
@@ -130,13 +135,21 @@ def _walked(message: Any) -> dict[str, Any]:
 
 
 def _danced(message: Any) -> dict[str, Any]:
-    return {"progress": round(message.feedback.progress, 3), "beat": message.feedback.beat}
+    progress = _number(message.feedback.progress, 3)
+    return {"goal": _id(message.goal_id), "progress": progress, "beat": message.feedback.beat}
 
 
-def _status(message: GoalStatusArray) -> str:
-    """The state of the newest goal."""
+def _id(goal_id: Any) -> str:
+    return bytes(goal_id.uuid).hex()
+
+
+def _status(message: GoalStatusArray) -> dict[str, str]:
+    """The newest goal, and its state."""
     goals = sorted(message.status_list, key=lambda s: (s.goal_info.stamp.sec, s.goal_info.stamp.nanosec))
-    return _STATES.get(goals[-1].status, "unknown") if goals else ""
+    if not goals:
+        return {"goal": "", "state": ""}
+    newest = goals[-1]
+    return {"goal": _id(newest.goal_info.goal_id), "state": _STATES.get(newest.status, "unknown")}
 
 
 def _path(message: Path) -> list[list[float]]:
@@ -151,7 +164,7 @@ def _map(message: OccupancyGrid) -> dict[str, Any] | None:
     return {
         "width": info.width,
         "height": info.height,
-        "cell": round(info.resolution, 4),
+        "cell": _number(info.resolution, 4),
         "origin": rounded(info.origin.position.x, info.origin.position.y),
         "occupied": occupied.tolist(),
     }
@@ -163,7 +176,7 @@ def _obstacles(message: MarkerArray) -> list[dict[str, Any]]:
             "name": marker.ns,
             "shape": _SHAPES[marker.type],
             "at": rounded(marker.pose.position.x, marker.pose.position.y, marker.pose.position.z),
-            "yaw": round(yaw_of(marker.pose.orientation), 4),
+            "yaw": _number(yaw_of(marker.pose.orientation), 4),
             "size": rounded(marker.scale.x, marker.scale.y, marker.scale.z),
             "color": rounded(marker.color.r, marker.color.g, marker.color.b),
         }
@@ -179,12 +192,10 @@ def _found(message: DetectedObjectArray) -> list[list[Any]]:
     ]
 
 
-def _log(message: Log) -> list[Any]:
-    return [_level(message.level), message.name, message.msg]
-
-
-def _level(level: int) -> str:
-    return "error" if level >= 40 else "warning" if level >= 30 else "info"
+def line_of(message: Log) -> tuple[str, str, str]:
+    """A line of the log: level, name of the node, text."""
+    level = "error" if message.level >= 40 else "warning" if message.level >= 30 else "info"
+    return level, message.name, message.msg
 
 
 def _constant(message: Any, prefix: str, value: int) -> str:
@@ -211,6 +222,5 @@ READINGS: Mapping[str, Reading] = {
     "/map": Reading(OccupancyGrid, "map", _map, latched=True),
     "/humanoid_simulator/obstacles": Reading(MarkerArray, "obstacles", _obstacles, latched=True),
     "/face_detection/detections": Reading(DetectedObjectArray, "found", _found),
-    "/rosout": Reading(Log, "log", _log, every=True),
 }
 """The topics that the page shows more of than their rates."""

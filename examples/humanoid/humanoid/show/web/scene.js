@@ -35,6 +35,7 @@ function chequers() {
 
 const flat = (color, opacity = 1) => new THREE.MeshBasicMaterial({ color, transparent: true, opacity, depthWrite: false });
 
+const BROAD = 0.7; // m beside the line of sight within which the board hides the robot
 const HIDING = 10; // obstacles are drawn after the marks that they hide
 
 // Draw something over the robot's feet, later things over earlier ones.
@@ -287,11 +288,50 @@ export class Scene {
     this.changed = true;
   }
 
+  // The board with the face, which stands in the scene from the beginning; it faces against x.
+  stand({ at, half, face, eye, mouth }) {
+    if (this.board) return;
+    this.board = new THREE.Group();
+    const add = (geometry, color, x, y, z) => {
+      const mesh = new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({ color }));
+      mesh.position.set(x, y, z);
+      mesh.castShadow = true;
+      this.board.add(mesh);
+    };
+    const [dark, light] = [0x0b0b0d, 0xf2f2eb];
+    const disc = (radius) => new THREE.CylinderGeometry(radius, radius, 0.004, 32).rotateZ(Math.PI / 2);
+    add(new THREE.BoxGeometry(0.02, 2 * half, 2 * half), dark, 0.012, 0, at[2]);
+    add(new THREE.CylinderGeometry(0.02, 0.02, at[2], 16).rotateX(Math.PI / 2), dark, 0.05, 0, at[2] / 2);
+    add(disc(face), light, -0.002, 0, at[2]);
+    for (const side of [-1, 1]) add(disc(eye[0]), dark, -0.004, side * eye[1], at[2] + eye[2]);
+    add(new THREE.BoxGeometry(0.004, 2 * mouth[0], 2 * mouth[1]), dark, -0.004, 0, at[2] + mouth[2]);
+    this.board.position.set(at[0], at[1], 0);
+    this.scene.add(this.board);
+    this.changed = true;
+  }
+
+  // The board is like glass while it stands between the camera and the robot.
+  clear() {
+    if (!this.board || !this.base) return;
+    const eye = new THREE.Vector2(this.camera.position.x, this.camera.position.y);
+    const way = new THREE.Vector2(this.base[0], this.base[1]).sub(eye);
+    const there = new THREE.Vector2(this.board.position.x, this.board.position.y).sub(eye);
+    const share = there.dot(way) / Math.max(way.lengthSq(), 1e-6);
+    const beside = there.sub(way.clone().multiplyScalar(share)).length();
+    const hides = share > -0.2 && share < 0.9 && beside < BROAD + (1 - share) * BROAD;
+    for (const { material } of this.board.children) {
+      material.opacity = hides ? 0.15 : 1;
+      material.transparent = hides;
+      material.depthWrite = !hides;
+    }
+  }
+
   // Nothing is drawn while nothing changes.
   render() {
     this.controls.update();
     if (!this.changed) return;
     this.changed = false;
+    this.clear();
     this.renderer.render(this.scene, this.camera);
     this.ease(performance.now());
   }

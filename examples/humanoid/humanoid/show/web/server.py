@@ -5,8 +5,12 @@ What happens is sent as server-sent events: one way, over plain HTTP, and the br
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import hmac
 import json
+import re
+import secrets
 import socket
 import sys
 import threading
@@ -36,10 +40,29 @@ _ELSEWHERE = ("192.0.2.1", 9)  # an address for documentation (RFC 5737): nothin
 _LONGEST = 4096  # bytes of a command
 _KEEP_ALIVE = 5.0  # s between comments on an idle stream, so that a closed page is noticed
 _PATIENCE = 10.0  # s for a client that sends nothing, or reads nothing
+_TOKEN = 18  # bytes
+_MAP = re.compile(r'<script type="importmap">(.*?)</script>', re.DOTALL)
+_NEWS = "/news"
+_OUR_SITES = {"same-origin", "none"}  # values of Sec-Fetch-Site; none: a person has typed the address
+
+
+def _policy() -> str:
+    """What the page may load and run: its own files, and the import map in it, which cannot be a file."""
+    found = _MAP.search((_FOLDER / "index.html").read_text(encoding="utf-8"))
+    assert found is not None, "index.html has an import map"
+    digest = base64.b64encode(hashlib.sha256(found[1].encode()).digest()).decode()
+    return (
+        f"default-src 'none'; script-src 'self' 'sha256-{digest}'; style-src 'self'; "
+        "img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'self'; "
+        # In a frame of another page, users could be tricked into clicking on something that they do not see.
+        "frame-ancestors 'none'"
+    )
+
+
 _HEADERS = {
     "Cache-Control": "no-store",
-    # In a frame of another page, users could be tricked into clicking on something that they do not see.
-    "Content-Security-Policy": "frame-ancestors 'none'",
+    "Content-Security-Policy": _policy(),
+    "Cross-Origin-Resource-Policy": "same-origin",
     "Referrer-Policy": "no-referrer",  # the address may hold the token
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
@@ -55,8 +78,8 @@ class PageServer:
     """A web server on a thread of its own.
 
     `documents` are functions by path that make further pages on request; `ask` does a command, and may take
-    its time. The server's threads call both. With a `token`, nobody gets anything without it; the page's
-    address has it. Without one, `host` must be this machine only.
+    its time. The server's threads call both. Nobody gets anything without the token, which the page's address
+    has: other users of this machine can reach the port, too.
     """
 
     def __init__(
@@ -65,13 +88,10 @@ class PageServer:
         documents: Mapping[str, Callable[[], Document]],
         ask: Callable[[Mapping[str, Any]], Answer],
         host: str = LOOPBACK,
-        token: str = "",
     ) -> None:
-        if not token and host != LOOPBACK:
-            raise ValueError(f"a page on {host} needs a token")
         self.documents = documents
         self.ask = ask
-        self.token = token
+        self.token = secrets.token_urlsafe(_TOKEN)
         self._host = host
         self._news = threading.Condition()
         self._channels: dict[str, tuple[int, str]] = {}  # number of the change, JSON
@@ -89,10 +109,19 @@ class PageServer:
 
     @property
     def url(self) -> str:
-        """The address of the page, with its token if it has one; others can open it if they may."""
-        query = f"?token={self.token}" if self.token else ""
+        """The address of the page, with its token."""
         host = _own_address() if self._host == _ANY else self._host
-        return f"http://{host}:{self.port}/{query}"
+        return f"http://{host}:{self.port}/?token={self.token}"
+
+    @property
+    def hosts(self) -> tuple[str, ...] | None:
+        """What a Host header may be; None if this machine has names that we do not know.
+
+        Browsers leave port 80 out.
+        """
+        if self._host != LOOPBACK:
+            return None
+        return tuple(f"{name}{port}" for name in (LOOPBACK, "localhost") for port in ("", f":{self.port}"))
 
     @property
     def watchers(self) -> int:
@@ -166,12 +195,19 @@ class _Handler(BaseHTTPRequestHandler):
     page: PageServer
 
     def do_GET(self) -> None:
-        path = urlsplit(self.path).path
-        if self._brings_token():
+        try:
+            place = urlsplit(self.path)
+        except ValueError:
+            self.send_error(HTTPStatus.BAD_REQUEST)
+            return
+        path = place.path
+        if not self._names_us():
+            return
+        if self._brings_token(place.query):
             self._keep_token(path)
         elif not self._may_enter():
             return
-        elif path == "/news":
+        elif path == _NEWS:
             self._stream()
         elif path in _FILES:
             file = _FOLDER / _FILES[path]
@@ -183,13 +219,15 @@ class _Handler(BaseHTTPRequestHandler):
             self.send_error(HTTPStatus.NOT_FOUND)
 
     def do_POST(self) -> None:
-        if not self._may_enter() or not self._may_command():
+        if not (self._names_us() and self._may_enter() and self._may_command()):
             return
         if self.path != "/command":
             self.send_error(HTTPStatus.NOT_FOUND)
             return
         length = self.headers.get("Content-Length") or ""
-        if not length.isascii() or not length.isdigit() or int(length) > _LONGEST:
+        # Python refuses to convert thousands of digits.
+        is_number = length.isascii() and length.isdigit() and len(length) <= len(str(_LONGEST))
+        if not is_number or int(length) > _LONGEST:
             self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"a command has at most {_LONGEST} bytes")
             return
         try:
@@ -206,10 +244,10 @@ class _Handler(BaseHTTPRequestHandler):
     def _cookie(self) -> str:
         return f"humanoid_{self.page.port}"  # browsers send cookies to all ports of a host
 
-    def _brings_token(self) -> bool:
+    def _brings_token(self, query: str) -> bool:
         """Whether the address has the token."""
-        given = parse_qs(urlsplit(self.path).query).get("token", [""])[-1]
-        return bool(self.page.token) and hmac.compare_digest(given.encode(), self.page.token.encode())
+        given = parse_qs(query).get("token", [""])[-1]
+        return hmac.compare_digest(given.encode(), self.page.token.encode())
 
     def _keep_token(self, path: str) -> None:
         """Let the browser remember the token, and forget the address that has it."""
@@ -220,28 +258,34 @@ class _Handler(BaseHTTPRequestHandler):
         self.end_headers()
 
     def _may_enter(self) -> bool:
-        """Refuse who has no token, or without tokens host names that somebody else's DNS points here."""
-        if self.page.token:
-            try:
-                given = SimpleCookie(self.headers.get("Cookie", "")).get(self._cookie)
-            except CookieError:
-                given = None
-            token = given.value if given else ""
-            if hmac.compare_digest(token.encode(), self.page.token.encode()):
-                return True
+        """Refuse whoever has no token, and what a page of another site asks for."""
+        try:
+            given = SimpleCookie(self.headers.get("Cookie", "")).get(self._cookie)
+        except CookieError:
+            given = None
+        token = given.value if given else ""
+        if not hmac.compare_digest(token.encode(), self.page.token.encode()):
             self.send_error(HTTPStatus.FORBIDDEN, "open the address with the token that the demo has printed")
             return False
-        name = (self.headers.get("Host") or "").partition(":")[0]  # browsers leave port 80 out
-        if name in {LOOPBACK, "localhost"}:
+        origins = self.headers.get_all("Origin") or []
+        sites = self.headers.get_all("Sec-Fetch-Site") or []
+        own = f"http://{self.headers['Host']}"
+        if all(origin == own for origin in origins) and all(site in _OUR_SITES for site in sites):
+            return True
+        self.send_error(HTTPStatus.FORBIDDEN, "this is for the page itself, not for other sites")
+        return False
+
+    def _names_us(self) -> bool:
+        """Refuse host names that somebody else's DNS points here."""
+        hosts, given = self.page.hosts, self.headers.get_all("Host") or []
+        if len(given) == 1 and (hosts is None or given[0] in hosts):
             return True
         self.send_error(HTTPStatus.FORBIDDEN, "this page is for 127.0.0.1 only")
         return False
 
     def _may_command(self) -> bool:
-        """Refuse pages of other sites: they name another origin, and cannot set our header unasked."""
-        origin = self.headers.get("Origin")
-        own = f"http://{self.headers.get('Host')}"
-        if self.headers.get("X-Humanoid") == "1" and origin in (None, own):
+        """Refuse forms of other sites, which cannot set our header."""
+        if self.headers.get("X-Humanoid") == "1":
             return True
         self.send_error(HTTPStatus.FORBIDDEN, "only the page itself may send commands")
         return False

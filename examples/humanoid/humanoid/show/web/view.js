@@ -12,9 +12,12 @@ new Pointer(scene);
 new Driver();
 
 const channels = {
-  setup: (value) => panel.setup(value),
+  setup: (value) => {
+    panel.setup(value);
+    scene.stand(value.board);
+  },
   time: (value) => panel.text("time", `${value.toFixed(1)} s`),
-  factor: (value) => panel.text("factor", `${value.toFixed(2)}×`),
+  factor: (value) => panel.text("factor", value === null ? "paused" : `${value.toFixed(2)}×`),
   battery: ({ charge, level }) => panel.text("battery", `${Math.round(charge * 100)} %${level === "normal" ? "" : ` ${level}`}`),
   gait: (value) => {
     panel.gait(value);
@@ -23,9 +26,9 @@ const channels = {
   stop: (value) => panel.stop(value),
   run: (value) => panel.run(value),
   task: (value) => panel.job(value),
-  walk: (state) => panel.goal("walk", { state }),
+  walk: (value) => panel.goal("walk", value),
   "walk feedback": (value) => panel.goal("walk", value),
-  dance: (state) => panel.goal("dance", { state }),
+  dance: (value) => panel.goal("dance", value),
   "dance feedback": (value) => panel.goal("dance", value),
   log: (value) => panel.log(value),
   topics: (value) => panel.topics(value),

@@ -19,7 +19,7 @@ from typing import Any
 from ifgen.graph.model import Graph
 from ifgen.observing.running_graph import FRAMEWORK_TOPICS, hidden, of_running
 from PIL import Image as Pictures
-from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
+from rcl_interfaces.msg import Log, Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
@@ -29,11 +29,12 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import Image
 
 from ...planning.choreography import DANCES
+from ...robot.scene import board
 from ..audience import Audience
 from ..scenarios import names
 from .commands import Commands
 from .heard import Heard, Rates
-from .readings import READINGS, Reading
+from .readings import READINGS, Reading, line_of
 from .server import LOOPBACK, Document, PageServer
 
 _LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -61,7 +62,6 @@ class WebView(Node):
         self,
         port: int = 0,
         host: str = LOOPBACK,
-        token: str = "",
         audience: Audience | None = None,
         scenario: str = "",
     ) -> None:
@@ -79,11 +79,13 @@ class WebView(Node):
         self._camera: Any = None  # the subscription to its pictures, while they are shown
         self._asked: SimpleQueue[tuple[Mapping[str, Any], Future[tuple[bool, str]]]] = SimpleQueue()
         self._commands = Commands(self, self._why, audience, scenario)
+        # Also while nobody watches: a command that is refused is answered with the reason in the log.
+        self.create_subscription(Log, "/rosout", self._on_log, _EVERY)
         self._stream = self.create_client(SetParameters, "/camera_driver/set_parameters")
         self.create_timer(_PERIOD, self._turn, clock=Clock(clock_type=ClockType.STEADY_TIME))
-        self.page = PageServer(port, {"/camera.jpg": self._latest_picture}, self._ask, host, token)
+        self.page = PageServer(port, {"/camera.jpg": self._latest_picture}, self._ask, host)
         scenarios = sorted({*names(), *([Path(scenario).stem] if scenario else [])}) if audience else []
-        self.page.show("setup", {"dances": list(DANCES), "scenarios": scenarios})
+        self.page.show("setup", {"dances": list(DANCES), "scenarios": scenarios, "board": board()})
 
     def destroy_node(self) -> None:
         """Close the page too."""
@@ -123,7 +125,7 @@ class WebView(Node):
 
     def _listen(self) -> None:
         for topic, reading in READINGS.items():
-            qos = _LATCHED if reading.latched else _EVERY if reading.every else _LATEST
+            qos = _LATCHED if reading.latched else _LATEST
             self._subscribe(topic, reading.kind, qos, reading)
 
     def _listen_no_more(self) -> None:
@@ -147,24 +149,27 @@ class WebView(Node):
             if reading is None:
                 continue
             for data in topic.take():
-                value = reading.read(deserialize_message(data, reading.kind))
-                if reading.channel == "log":
-                    self._log(*value)
-                else:
-                    self._note(reading.channel, value)
-                    self.page.show(reading.channel, value)
+                try:
+                    value = reading.read(deserialize_message(data, reading.kind))
+                except ValueError:
+                    continue  # garbage, which whoever acts on it refuses
+                self._note(reading.channel, value)
+                self.page.show(reading.channel, value)
         commands = self._commands
         self.page.show("run", {"paused": commands.paused, "speed": commands.speed})
 
     def _note(self, channel: str, value: Any) -> None:
         if channel == "time":
             self._simulated = value
+        elif channel == "gait":
+            self._commands.mode, self._commands.reason = value["mode"], value["reason"]
         elif channel == "task":
             self._commands.task = value["number"]
         elif channel == "obstacles":
             self._commands.obstacles = [thing["name"] for thing in value]
 
-    def _log(self, level: str, name: str, text: str) -> None:
+    def _on_log(self, message: Log) -> None:
+        level, name, text = line_of(message)
         self._line += 1
         self._lines.append([self._line, level, name, text])
         if level != "info":
@@ -186,7 +191,8 @@ class WebView(Node):
         counts = {name: topic.messages for name, topic in self._heard.items()}
         if self._simulated is not None:
             self._rates.count(now, self._simulated, counts)
-        self.page.show("factor", round(self._rates.factor, 2))
+        if (factor := self._rates.factor) is not None:
+            self.page.show("factor", None if self._commands.paused else round(factor, 2))
         graph = of_running(self)
         self.page.show("graph", _drawing(graph))
         kinds = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
