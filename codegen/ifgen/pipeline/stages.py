@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from pathlib import Path
 
 from ifgen import resources
@@ -18,7 +20,7 @@ from ifgen.pipeline.values import Condition, Inputs, Made, Progress
 from ifgen.reading.packages import find_packages
 from ifgen.reading.search_path import SearchPath, WithDeps
 from ifgen.writing import transaction, write
-from ifgen.writing.write import Drift, OutputPackage
+from ifgen.writing.write import Drift, OutputPackage, Written
 
 # Late imports: parsers, planners and jinja2, none of which a run needs if nothing has changed.
 
@@ -68,7 +70,7 @@ def generate(
     """
     with transaction.locked(Path(output)):
         inputs = _read(paths, Path(output), include, with_deps, templates, condition)
-        return unless_fresh(inputs, partial(_make, progress=progress), _write)
+        return unless_fresh(inputs, partial(_make, progress=progress), _prepared)
 
 
 def drift(
@@ -86,8 +88,10 @@ def drift(
     """
     inputs = _read(paths, Path(output), include, with_deps, templates, condition)
     made = _make(inputs, Unchanged(), progress)
-    packages, left, missing = _with_those_that_go(inputs, made)
-    return Drifted(write.drift(packages, inputs.output), (*left, *made.told, *missing))
+    left: list[Path] = []
+    packages, missing = _with_those_that_go(inputs, made, left)
+    drifts = write.drift(packages, inputs.output)
+    return Drifted(drifts, (*map(remarks.left_behind, sorted(left)), *made.told, *missing))
 
 
 def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
@@ -161,16 +165,23 @@ def _make(inputs: Inputs, unchanged: Unchanged, progress: Progress | None) -> Ma
     job = resolve(inputs)
     if inputs.condition is not None:
         inputs.condition.check(job.registries)
-    planned = plan(job, inputs.custom, unchanged.packages, unchanged.modules(job.registry), progress)
+    modules = unchanged.modules(job.registry)
+    planned = plan(job, inputs.custom, unchanged.packages, modules, progress)
     packages = render(planned, inputs.custom)
     generated = {target.name for target in job.targets}
-    return Made(packages, generated, job.needed, job.warnings(), unchanged.packages, job)
+    return Made(packages, generated, job.needed, job.warnings(), unchanged.packages, job, modules)
 
 
-def _write(inputs: Inputs, made: Made) -> Generated:
+@contextmanager
+def _prepared(inputs: Inputs, made: Made) -> Generator[Callable[[], Generated]]:
+    left: list[Path] = []
+    packages, missing = _with_those_that_go(inputs, made, left)
+    with write.prepared(packages, inputs.output, GENERATOR) as finish:
+        yield lambda: _generated(inputs, made, finish(), (*map(remarks.left_behind, sorted(left)), *missing))
+
+
+def _generated(inputs: Inputs, made: Made, done: Written, found: Iterable[Diagnostic]) -> Generated:
     output = inputs.output
-    packages, left, missing = _with_those_that_go(inputs, made)
-    done = write.write(packages, output, GENERATOR)
     skipped = (
         path
         for name, record in made.skipped.items()
@@ -178,16 +189,23 @@ def _write(inputs: Inputs, made: Made) -> Generated:
     )
     unchanged = tuple(sorted((*done.unchanged, *skipped)))
     edited = (*map(remarks.edited, done.kept), *remarks.overwritten(done.edited, output))
-    diagnostics = (*left, *edited, *made.told, *missing)
+    diagnostics = (*edited, *made.told, *found)
     return Generated(done.written, unchanged, done.removed, done.kept, diagnostics)
 
 
 def _with_those_that_go(
-    inputs: Inputs, made: Made
-) -> tuple[list[OutputPackage], list[Diagnostic], tuple[Diagnostic, ...]]:
-    """The packages to write and to remove, which files of users that leaves, and what will be missing."""
+    inputs: Inputs, made: Made, left: list[Path]
+) -> tuple[Iterator[OutputPackage], tuple[Diagnostic, ...]]:
+    """The packages to write and to remove, and what will be missing.
+
+    Each of these packages adds the user's files that nothing uses any more to `left`.
+    """
     going = list(earlier.gone(inputs.paths, inputs.packages, made.generated, inputs.output))
-    packages = [*going, *made.packages]
-    left = [remarks.left_behind(path) for path in write.left_behind(packages, inputs.output)]
     gone = {package.name for package in going}
-    return packages, left, provision.missing(made.needed, inputs.search, inputs.output, gone)
+
+    def packages() -> Iterator[OutputPackage]:
+        for package in chain(going, made.packages):
+            left.extend(write.left_behind([package], inputs.output))
+            yield package
+
+    return packages(), provision.missing(made.needed, inputs.search, inputs.output, gone)

@@ -16,6 +16,7 @@ from ifgen.writing.write import OutputPackage
 
 if TYPE_CHECKING:
     from ifgen.definition.interfaces import Registry
+    from ifgen.pipeline.freshness.modules import Modules
     from ifgen.pipeline.job import Job
 
 Progress = Callable[[int, int, str], object]
@@ -54,14 +55,16 @@ class Inputs:
 class Made:
     """The files that a run writes, and the diagnostics about their sources.
 
+    `packages` are rendered when they are asked for, which is once: a large run has no room for all of them.
     `generated` are the names of its packages. Those among them that are `skipped` are on disk already, each
-    with its manifest, and not in `packages`. `needed` are others that these need. `job` is what was resolved;
-    None if nothing had to be.
+    with its manifest, and not in `packages`. `needed` are others that these need. `job` is what was resolved,
+    and `modules` knows the digests of its interfaces; None if nothing had to be.
     """
 
-    packages: tuple[OutputPackage, ...]
+    packages: Iterable[OutputPackage]
     generated: Collection[str]
     needed: Collection[str]
     told: tuple[Diagnostic, ...]
     skipped: Mapping[str, Manifest]
     job: Job | None = None
+    modules: Modules | None = None

@@ -22,27 +22,67 @@ _FORGOTTEN = 3600.0
 """The age in seconds of a leftover stage, if it is unknown whether a run is at work."""
 
 
-def apply(changes: Sequence[Change], directory: Path) -> None:
-    """Make the changes, in order, to files below `directory`.
+def apply(changes: Iterable[Change], directory: Path) -> None:
+    """Make the changes, in order, to files below `directory`, as a `Stage` does."""
+    with staging(directory) as stage:
+        stage.apply([(path, None if data is None else stage.put(data)) for path, data in changes])
 
-    New contents are on the disk before the first file moves, and each file changes in one step: a reader sees
-    the old or the new one. Raises OSError (disk full, no permission); then, as after Ctrl-C, every file is as
-    before.
-    """
-    _clear(left_over(directory, alone=False))
-    stage = directory / Path(tempfile.mkdtemp(prefix=_STAGE, dir=directory)).name  # relative if that is
-    try:
-        staged = [(_stage(stage / f"new{i}", data), path) for i, (path, data) in enumerate(changes)]
+
+class Stage:
+    """New contents of files of a folder, on the disk beside them until they replace them all together."""
+
+    def __init__(self, directory: Path) -> None:
+        self._directory = directory
+        self._folder: Path | None = None
+        self._count = 0
+
+    def put(self, data: bytes) -> Path:
+        """Keep a new content. Raises OSError (disk full, no permission)."""
+        self._count += 1
+        place = self._made() / f"new{self._count}"
+        try:
+            place.write_bytes(data)
+        except OSError as error:  # a full disk has no name by itself
+            error.filename = error.filename or str(self._directory)
+            raise
+        return place
+
+    def apply(self, changes: Sequence[tuple[Path, Path | None]]) -> None:
+        """Replace files, in order, by contents that were put here; None removes a file.
+
+        Each file changes in one step: a reader sees the old or the new one. Raises OSError; then, as after
+        Ctrl-C, every file is as before.
+        """
         with _undone_on_failure() as undo:
-            for i, (new, path) in enumerate(staged):
+            for i, (path, new) in enumerate(changes):
                 _make_folder(path.parent, undo)
-                _remember(path, stage / f"old{i}", undo)
+                _remember(path, self._made() / f"old{i}", undo)
                 if new is None:
                     path.unlink()
                 else:
                     new.replace(path)
+
+    def clear(self) -> None:
+        """Remove what is left."""
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _made(self) -> Path:
+        if self._folder is None:
+            _clear(left_over(self._directory, alone=False))
+            made = tempfile.mkdtemp(prefix=_STAGE, dir=self._directory)
+            self._folder = self._directory / Path(made).name  # relative if that is
+        return self._folder
+
+
+@contextmanager
+def staging(directory: Path) -> Generator[Stage]:
+    """A stage in a folder, which is gone after the block."""
+    stage = Stage(directory)
+    try:
+        yield stage
     finally:
-        shutil.rmtree(stage, ignore_errors=True)
+        stage.clear()
 
 
 @contextmanager
@@ -89,17 +129,6 @@ def _undone_on_failure() -> Generator[list[Callable[[], object]]]:
             with suppress(OSError):
                 step()
         raise
-
-
-def _stage(place: Path, data: bytes | None) -> Path | None:
-    if data is None:
-        return None
-    try:
-        place.write_bytes(data)
-    except OSError as error:  # a full disk has no name by itself
-        error.filename = error.filename or str(place.parent.parent)
-        raise
-    return place
 
 
 def _make_folder(folder: Path, undo: list[Callable[[], object]]) -> None:
