@@ -175,6 +175,7 @@ def check(
         include=settings.include,
         output=settings.output,
         ros_distro=settings.custom.ros_distro,
+        exclude=settings.exclude,
     )
     told = settings.policy.told(findings.diagnostics)
     return terminal.print_findings(told, format_, "" if quiet else f"{_looked_at(findings)}: no mistakes")

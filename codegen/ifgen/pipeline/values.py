@@ -39,7 +39,8 @@ class Inputs:
     """The input of a run: the packages at `paths`, and the places to look for others.
 
     They are generated into the folder `output`, `with_deps` or without, with what the user adds to them.
-    A run that does not meet the `condition` writes nothing.
+    A run that does not meet the `condition` writes nothing. `excluded` are the names of packages, interfaces
+    and nodes that the user leaves out; a run that is to `keep_going` leaves out what is wrong, too.
     """
 
     paths: tuple[Path, ...]
@@ -49,6 +50,16 @@ class Inputs:
     with_deps: WithDeps
     custom: Customization
     condition: Condition | None = None
+    excluded: tuple[str, ...] = ()
+    keep_going: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """The name of an interface, a node or a whole package that a run leaves out, and the reason."""
+
+    name: str
+    reason: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +69,8 @@ class Made:
     `packages` are rendered when they are asked for, which is once: a large run has no room for all of them.
     `generated` are the names of its packages. Those among them that are `skipped` are on disk already, each
     with its manifest, and not in `packages`. `needed` are others that these need. `job` is what was resolved,
-    and `modules` knows the digests of its interfaces; None if nothing had to be.
+    and `modules` knows the digests of its interfaces; None if nothing had to be. `left_out` is not in
+    `packages`.
     """
 
     packages: Iterable[OutputPackage]
@@ -68,3 +80,4 @@ class Made:
     skipped: Mapping[str, Manifest]
     job: Job | None = None
     modules: Modules | None = None
+    left_out: tuple[LeftOut, ...] = ()

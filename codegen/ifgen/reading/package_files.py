@@ -93,7 +93,8 @@ class PackageFiles:
     """A package with interfaces, descriptions of nodes or both, and the files of it that were asked for.
 
     `root` is its folder; `xml` is its package.xml and `listed` its own list of interfaces, where it has one.
-    A package that stands for single files has `partial` set: it can find its other files too.
+    A package that stands for single files has `partial` set: it can find its other files too, except those
+    `left_out`, by folder and name.
     """
 
     name: str
@@ -103,6 +104,7 @@ class PackageFiles:
     xml: PackageXml | None = field(default=None, compare=False, repr=False)
     nodes: tuple[NodeFile, ...] = ()
     listed: InterfaceList | None = field(default=None, compare=False, repr=False)
+    left_out: frozenset[tuple[str, str]] = frozenset()
 
     @property
     def has_interfaces(self) -> bool:
@@ -118,7 +120,7 @@ class PackageFiles:
     def _on_disk(self) -> Mapping[tuple[str, str], InterfaceFile]:
         known = {(file.folder, file.name): file for file in contents(self.root).files} if self.partial else {}
         known.update(((file.folder, file.name), file) for file in self.files)
-        return known
+        return {key: file for key, file in known.items() if key not in self.left_out}
 
     def interface(self, folder: str, name: str) -> InterfaceFile | None:
         """The file of an interface; None if there is none."""

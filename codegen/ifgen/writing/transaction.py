@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
 import time
 from collections.abc import Callable, Generator, Iterable, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TypeAlias
@@ -18,6 +19,7 @@ Change: TypeAlias = tuple[Path, bytes | None]
 """A file and its new content; None removes it."""
 
 _STAGE = ".ifgen-tmp-"
+_ATTEMPTS = 100
 _FORGOTTEN = 3600.0
 """The age in seconds of a leftover stage, if it is unknown whether a run is at work."""
 
@@ -91,16 +93,37 @@ def locked(directory: Path) -> Generator[None]:
 
     Remove the leftovers of killed runs.
     """
+    with ExitStack() as held:
+        for attempts_left in reversed(range(_ATTEMPTS)):
+            with ExitStack() as attempt:
+                try:
+                    alone = _entered(directory, attempt)
+                except FileNotFoundError:
+                    if not attempts_left:
+                        raise
+                    continue  # another run removed it meanwhile: it made the folder, and nothing came
+                held.push(attempt.pop_all())
+                break
+        _clear(left_over(directory, alone=alone))
+        yield
+
+
+def _entered(directory: Path, held: ExitStack) -> bool:
+    """Make a folder if need be, and lock it. Raises FileNotFoundError if it is gone once it is locked."""
     made = [folder for folder in (directory, *directory.parents) if not folder.exists()]
     directory.mkdir(parents=True, exist_ok=True)
-    try:
-        with locking.exclusive(directory) as alone:
-            _clear(left_over(directory, alone=alone))
-            yield
-    finally:
-        with suppress(OSError):
-            for folder in made:
-                folder.rmdir()
+    before = directory.stat()
+    alone = held.enter_context(locking.exclusive(directory))
+    held.callback(_remove_empty, made)  # while it is locked, so that nobody has begun to work in it
+    if not os.path.samestat(before, directory.stat()):
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(directory))
+    return alone
+
+
+def _remove_empty(folders: Sequence[Path]) -> None:
+    with suppress(OSError):
+        for folder in folders:
+            folder.rmdir()
 
 
 def left_over(directory: Path, *, alone: bool) -> list[Path]:
