@@ -237,7 +237,7 @@ def test_other_bad_places_are_one_error_each(ifgen: Run, git: Git, monkeypatch: 
     done = ifgen("breaking", "empty", "--against", "HEAD")
     assert (done.code, "the repository has no commit yet" in done.err) == (2, True)
     Path("nothing").mkdir()
-    write(Path("other.lock"), "version 1\n")
+    write(Path("other.lock"), "version 1\nend\n")
     for reference in ("nothing", "other.lock"):
         done = ifgen("breaking", "demo_msgs", "--against", reference)
         assert (done.code, "there is nothing to compare" in done.err) == (2, True), done

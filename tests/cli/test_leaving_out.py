@@ -1,14 +1,15 @@
-"""`ifgen generate --keep-going` and `exclude`: what is right is generated, and nothing names what is not there."""
+"""`ifgen generate --keep-going` and `exclude`: what is right is generated, and names only what is there."""
 
 from __future__ import annotations
 
-import ast
+import re
 from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from ifgen.pipeline import stages
+
 from tests.cli.conftest import Run
 
 NODE = (
@@ -46,12 +47,12 @@ def test_what_is_right_is_generated(workspace: Path, ifgen: Run) -> None:
     assert not Path("out").exists()
     done = ifgen("generate", "ws", "-o", "out", "--keep-going")
     assert (done.code, done.err.count("error[")) == (1, 1)
-    left = [line for line in done.err.splitlines() if line.startswith("left out: ")]
+    left = sorted(line for line in done.err.splitlines() if line.startswith("left out: "))
     assert left == [
         "left out: a_msgs/msg/Bad: there is no interface package 'absent_msgs'",
-        "left out: robot/nodl/lost: needs b_msgs/msg/User, which is left out",
         "left out: b_msgs/msg/User: needs a_msgs/msg/Bad, which is left out",
         "left out: c_msgs/action/Top: needs b_msgs/msg/User, which is left out",
+        "left out: robot/nodl/lost: needs b_msgs/msg/User, which is left out",
     ]
     assert {path.name for path in Path("out").iterdir()} == {"a_msgs", "b_msgs", "robot"}
     assert "Bad" not in Path("out/a_msgs/msg/__init__.py").read_text()
@@ -81,7 +82,7 @@ def test_exclude(workspace: Path, ifgen: Run) -> None:
     write({"pyproject.toml": '[tool.ifgen]\npaths = ["ws"]\nexclude = ["a_msgs", "robot"]\n'}, workspace)
     assert ifgen("check").code == 0
     done = ifgen("generate")
-    assert (done.code, "b_msgs/srv/Fine: needs a_msgs" in done.err) == (1, True), "nothing is left"
+    assert (done.code, "there is no interface package 'a_msgs'" in done.err) == (1, True), "nothing is left"
 
 
 def test_a_file_that_cannot_be_read_is_left_out(workspace: Path, ifgen: Run) -> None:
@@ -110,8 +111,8 @@ def test_the_output_is_closed(
         mistake = data.draw(st.sampled_from(mistakes)) if i in broken else "int32 n"
         write({f"in/p{i % 3}_msgs/msg/M{i}.msg": f"{mistake}\n{fields}"}, root)
     reached = set(broken)
-    for i in holds:
-        if holds[i] & reached:
+    for i, held in holds.items():
+        if held & reached:
             reached.add(i)
     if len(reached) == len(needs):
         return
@@ -119,6 +120,6 @@ def test_the_output_is_closed(
     assert {left.name for left in done.left_out} == {f"p{i % 3}_msgs/msg/M{i}" for i in reached}
     listed: set[str] = set()
     for index in (root / "out").glob("*/msg/__init__.py"):
-        literals = [n.value for n in ast.walk(ast.parse(index.read_text())) if isinstance(n, ast.Constant)]
-        listed |= {f"{index.parent.parent.name}/{text}" for text in literals if isinstance(text, str) and text[:1] == "M" and text[1:].isdigit()}
+        names = re.findall(r'"(M\d+)": "', index.read_text())
+        listed |= {f"{index.parent.parent.name}/{name}" for name in names}
     assert listed == {f"p{i % 3}_msgs/M{i}" for i in holds.keys() - reached}

@@ -43,7 +43,7 @@ def earlier(name: str, paths: Sequence[Path], include: Sequence[Path], base: Pat
 
 def _not_empty(name: str, found: Version) -> Version:
     if not found.packages and not found.mistakes:
-        message = f"'{shorten(name)}' has no interface and no node that is here too: there is nothing to compare"
+        message = f"'{shorten(name)}' has none of these interfaces and nodes: there is nothing to compare"
         advice = "name a revision, or a folder or a lock file with earlier versions of these packages"
         raise UsageError([Diagnostic("unknown-revision", message, help=advice)])
     return found

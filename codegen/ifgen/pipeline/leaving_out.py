@@ -140,12 +140,13 @@ class _Leaving:
     def _owner(self, path: Path) -> Iterator[str]:
         for package in self._packages():
             name = next((name for name, file in _files(package) if file == path), None)
-            if name is not None and name not in self.reasons:
+            is_node = path.parent.name == NODE_FOLDER
+            if name is not None and not (is_node and name in self.reasons):
                 yield name
                 return
             root = package.root.absolute()
             if path.is_relative_to(root):
-                if path.parent.name == NODE_FOLDER and package.nodes:  # a part that others include
+                if is_node and package.nodes:  # a part that others include
                     yield from (f"{package.name}/{NODE_FOLDER}/{node.name}" for node in package.nodes)
                 else:
                     yield package.name

@@ -72,8 +72,8 @@ def generate(  # noqa: PLR0913 - one for each option
     all of the user's additions. What the patterns in `exclude` name is left out, and what needs that.
 
     Raises InputError with all mistakes, also if the interfaces do not meet the `condition`, and OSError; then
-    nothing has been written. If it is to `keep_going`, it leaves out what is wrong and what needs that, and the
-    mistakes are among the diagnostics.
+    nothing has been written. If it is to `keep_going`, it leaves out what is wrong and what needs that. The
+    mistakes are then among the diagnostics.
     """
     with transaction.locked(Path(output)):
         inputs = _read(
