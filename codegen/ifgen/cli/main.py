@@ -48,6 +48,10 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
         return completion.complete(commands)
     try:
         words = list(sys.argv[1:] if arguments is None else arguments)
+        if words[:1] == ["help"]:
+            words = [*words[1:], "--help"]
+        elif words == ["-v"]:
+            words = ["--version"]
         # Not `commands.main`, which has its own way with Ctrl-C.
         with commands.make_context("ifgen", words) as context:
             code: int | None = commands.invoke(context)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import sysconfig
 from collections.abc import Mapping, Set
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -29,6 +31,7 @@ NODE_EXTENSIONS: Final = (".nodl.json", ".nodl.yaml", ".nodl.yml")
 IDL: Final = ".idl"
 """The extension of interfaces in OMG IDL, of all three kinds."""
 
+_MODULE: Final = re.compile(rf"^\s*module\s+({'|'.join(FOLDERS)})\b", re.MULTILINE)
 _ADAPTED: Final = b"// generated from rosidl_adapter/"
 
 
@@ -192,8 +195,14 @@ def installed_files(root: Path) -> tuple[InterfaceFile, ...]:
 
 
 def folder_of(path: Path) -> str:
-    """The folder that a listed file counts as if in, which its extension says."""
-    return path.parent.name if path.suffix == IDL else path.suffix[1:]
+    """The folder that a listed file counts as if in: its extension says that, or the modules of an .idl file."""
+    if path.suffix != IDL:
+        return path.suffix[1:]
+    if path.parent.name not in FOLDERS:
+        with suppress(InputError):
+            found = _MODULE.search(read_source(path).text)
+            return found[1] if found else path.parent.name
+    return path.parent.name
 
 
 def _files_below(root: Path) -> tuple[InterfaceFile, ...]:
