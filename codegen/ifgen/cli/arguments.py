@@ -21,9 +21,9 @@ class _Existing(click.Path):
         try:
             return super().convert(value, param, ctx)
         except click.BadParameter as error:
-            if near := near_paths(value):
-                error.message += f" Did you mean {' or '.join(map(repr, near))}?"
-            raise
+            if not (near := near_paths(value)):
+                raise
+            self.fail(f"{error.message} Did you mean {' or '.join(map(repr, near))}?", param, ctx)
 
 
 EXISTING = _Existing()

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import gc
 import sys
+from collections import Counter
 from collections.abc import Generator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -19,13 +21,15 @@ from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import with_deps as with_deps_option
 from ifgen.config.settings import Settings, settle
-from ifgen.diagnostics import any_errors, shown_path
+from ifgen.diagnostics import Diagnostic, any_errors, shown_path
 from ifgen.writing.interruption import terminable
 
 if TYPE_CHECKING:
     from ifgen.pipeline.stages import Generated
     from ifgen.pipeline.values import Condition, LeftOut
     from ifgen.reading.search_path import WithDeps
+
+_UNDECLARED: Final = "undeclared-dependency"
 
 # Late imports: the stages take longest to load, and a mistake in an option is told without them.
 
@@ -139,12 +143,29 @@ def write(
     except KeyboardInterrupt as stop:
         stop.args = stop.args or ("no file was changed",)
         raise
-    told = settings.policy.told(done.diagnostics)
+    told = _in_short(settings.policy.told(done.diagnostics))
     terminal.print_diagnostics(told, stderr=True)
     _say_what_is_left_out(done.left_out)
     if not quiet:
         _report(done, settings.output)
     return int(any_errors(told) or (changes_fail and bool(done.written or done.removed)))
+
+
+def _in_short(found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+    """The diagnostics, with one for all undeclared dependencies of a package; `ifgen check` has each."""
+    counts = Counter(each.message.partition(" ")[0] for each in found if each.rule == _UNDECLARED)
+    short: list[Diagnostic] = []
+    for each in found:
+        package = each.message.partition(" ")[0]
+        count = counts[package] if each.rule == _UNDECLARED else 1
+        if count > 1:
+            message = f"{package} uses {count} packages without declaring them"
+            advice = "`ifgen check` shows each, and what to add to package.xml and CMakeLists.txt"
+            short.append(replace(each, message=message, primary=None, secondary=(), help=advice))
+            counts[package] = 0
+        elif count:
+            short.append(each)
+    return short
 
 
 def _say_what_is_left_out(left_out: Sequence[LeftOut]) -> None:
@@ -197,7 +218,7 @@ def _check_freshness(
             exclude=settings.exclude,
             keep_going=keep_going,
         )
-    told = settings.policy.told(found.diagnostics)
+    told = _in_short(settings.policy.told(found.diagnostics))
     terminal.print_diagnostics(told, stderr=True)
     _say_what_is_left_out(found.left_out)
     drifts = found.drifts

@@ -192,9 +192,7 @@ def _never_called(source: Source, lies_there: Sequence[Path]) -> InterfaceList |
     if (call := _CALL.search(source.text)) is not None:
         message = f"{FILE} does not reach {GENERATE} by default: colcon builds no interfaces of this package"
         label = Label(Span(source, call.start("name"), call.end("name")), "not reached")
-        advice = (
-            f"{taken}. If colcon should build them, look at the conditions and the `return()` before the call"
-        )
+        advice = f"{taken}. If colcon should build them, look at the conditions before the call"
     else:
         message = f"{FILE} never calls {GENERATE}: colcon builds no interfaces of this package"
         label = Label(Span(source, 0, 0))

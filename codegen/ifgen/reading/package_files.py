@@ -195,7 +195,7 @@ def installed_files(root: Path) -> tuple[InterfaceFile, ...]:
 
 
 def folder_of(path: Path) -> str:
-    """The folder that a listed file counts as if in: its extension says that, or the modules of an .idl file."""
+    """The folder that a listed file counts as if in: its extension says it, or a module in an .idl file."""
     if path.suffix != IDL:
         return path.suffix[1:]
     if path.parent.name not in FOLDERS:

@@ -255,7 +255,7 @@ def near_paths(path: str | Path) -> list[str]:
     """The paths in the folder of one that does not exist which look most like it."""
     missing = Path(path)
     try:
-        names = [] if os.path.lexists(missing) else os.listdir(missing.parent)
+        names = [] if os.path.lexists(missing) else [entry.name for entry in missing.parent.iterdir()]
     except (OSError, ValueError):
         return []
     from difflib import get_close_matches  # of use only where something is wrong
