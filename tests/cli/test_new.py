@@ -15,7 +15,7 @@ from .conftest import Run
 def test_everything_from_nothing(ifgen: Run, tmp_path: Path) -> None:
     """A new package of interfaces and one of a node pass the check at once, and find each other."""
     for kind in ("msg/Obstacle", "srv/Move", "action/Walk"):
-        done = ifgen("new", "interface", f"my_msgs/{kind}")
+        done = ifgen("new", "interface", f"my_msgs/{kind}", "--colcon")
         assert done.code == 0
         assert f"wrote interfaces/my_msgs/{kind}.{kind.partition('/')[0]}\n" in done.out
         assert done.out.endswith("next: `ifgen generate interfaces/my_msgs`\n")
@@ -84,7 +84,7 @@ def test_where_it_goes(ifgen: Run, tmp_path: Path) -> None:
     assert ifgen("new", "package", "demo").out.startswith("wrote src/ros/demo/package.xml")
     assert ifgen("new", "package", "demo", "--in", "other").code == 0
     (tmp_path / "src/ros/deep").mkdir()
-    ifgen("new", "interface", "deep_msgs/msg/A", "--in", "src/ros/deep")
+    ifgen("new", "interface", "deep_msgs/msg/A", "--in", "src/ros/deep", "--colcon")
     assert ifgen("new", "node", "deep_msgs/n").out.startswith("wrote src/ros/deep/deep_msgs/nodl/n.nodl.yaml")
 
 

@@ -134,7 +134,7 @@ def _root(package_name: str, folder: Path | None) -> Path:
 
 
 def _is_in_workspace(root: Path) -> bool:
-    """Whether colcon is used here: ROS 2 is sourced, colcon built in a folder above, or a neighbour has CMake."""
+    """Whether ROS 2 is sourced, colcon has built in a folder above, or a package beside has CMake."""
     built = (parent / "install" / ".colcon_install_layout" for parent in root.absolute().parents)
     return (
         bool(os.environ.get("AMENT_PREFIX_PATH"))
