@@ -7,6 +7,8 @@ REFERENCE := reference
 BIN := $(VENV)/bin
 TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
 # Tests that the codec in C and the generated functions must pass alike: `make test` runs them with each, the longest first.
+# Tests that use rclpy in their own process: one session for each rclpy.
+INSIDE := $(wildcard tests/*/inside tests/*/*/inside)
 BOTH_CODECS := $(addprefix tests/,against_rosidl/test_classes.py \
 	$(addprefix codec/test_,$(addsuffix .py,hostile_input large refusals round_trip views wire)) runtime/test_message_classes.py)
 # The packages that nodes import besides rclpy.
@@ -24,7 +26,7 @@ unexport PYTHONDONTWRITEBYTECODE
 export PYTHONPYCACHEPREFIX := $(abspath $(VENV))/pycache
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-kilted fuzz lint bench dist clean
+.PHONY: help demo test test-slow test-kilted interop fuzz lint bench dist clean
 
 help:  ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "make %-11s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -39,16 +41,24 @@ demo: $(VENV)/.run  ## see ifgen work on real interfaces, and a humanoid that wa
 test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as well)
 	$(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone"
 	IFGEN_CODEC=python $(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone" $(BOTH_CODECS)
-	$(BIN)/pytest -n auto --transport both generated
+	$(BIN)/pytest -n auto --dist worksteal --transport local -m "not slow and not alone" $(INSIDE)
+	$(BIN)/pytest -n auto --transport both generated tests/libraries/inside/test_filters.py
 
 test-slow: $(VENV)/.test  ## run the tests that take longer
 	$(BIN)/pytest -n auto --dist worksteal -m "slow and not alone"
+	$(BIN)/pytest -n auto --dist worksteal --transport local -m "slow and not alone" $(INSIDE)
+	IFGEN_CODEC=python IFGEN_CASES=400 $(BIN)/pytest -n auto --transport local $(addprefix tests/rclpy/inside/,\
+		mismatched_topics test_mismatch_services.py test_hostile_bytes.py)
+	$(BIN)/pytest -n auto --dist worksteal --transport both tests/libraries/inside
 	$(BIN)/pytest -m alone
 
 test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in its own environment
 	@$(MAKE) --no-print-directory VENV=$(VENV)-kilted REFERENCE=reference-kilted $(VENV)-kilted/.test
 	$(VENV)-kilted/bin/pytest -n auto -m "not alone" tests/native
 	$(VENV)-kilted/bin/pytest -n auto --transport rclpy generated
+
+interop: $(VENV)/.test  ## meet other implementations of rmw_zenoh's conventions and of DDS (INSTALL=1 first, about 1 GB)
+	$(BIN)/python -m tests.interop.bench $(if $(INSTALL),--install) $(OPTIONS)
 
 fuzz: $(VENV)/.test  ## compare the codecs on mutated input (CASES=10000000, SANITIZE=1)
 	$(BIN)/python -m tests.codec.fuzzing --cases $(CASES) $(if $(SANITIZE),--sanitize)
@@ -82,7 +92,7 @@ $(VENV)/.run: pyproject.toml $(wildcard codegen/*/pyproject.toml) .ci/make_venv.
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run $(VENV)/.native
-	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[net,sim,tools]' --group dev --group $(REFERENCE)
+	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim,tools]' --group dev --group $(REFERENCE)
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.

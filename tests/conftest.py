@@ -1,11 +1,16 @@
 """Set-up of all tests: nodes that nobody else hears, and examples that are the same on every machine.
 
 No other process on this machine or beyond it hears the nodes that tests start.
+
+Tests in folders called `inside` use rclpy in their own process, which has one rclpy only. So they run in sessions of
+their own, with `--transport local` or, those of libraries, on either.
 """
 
 import os
 import signal
+import tempfile
 from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -34,6 +39,30 @@ settings.load_profile("ifgen")
 # Hypothesis would also draw constants from the sources of imported modules of ours: other examples in each process
 # and after each edit. There is no public switch for that; test_drawn.py notices if this one stops working.
 providers._get_local_constants = providers.Constants
+
+
+_ROOT = Path(__file__).parents[1]
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Let the programs that tests in `inside` start find the same rclpy, and log elsewhere."""
+    if _transport(config) == "local":
+        places = (_ROOT / "codegen/underlay", _ROOT / "generated", _ROOT / "codegen", _ROOT)
+        os.environ["PYTHONPATH"] = os.pathsep.join(map(str, places))
+        os.environ["ROS_LOG_DIR"] = _kept.enter_context(tempfile.TemporaryDirectory(prefix="ifgen-logs-"))
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave `inside` to sessions with a transport. Raise UsageError if this one was asked for its tests."""
+    if collection_path.name != "inside" or _transport(config):
+        return None
+    if any("inside" in Path(word.partition("::")[0]).parts for word in config.args):
+        raise pytest.UsageError(f"the tests in {collection_path} need a transport: add `--transport local`")
+    return True
+
+
+def _transport(config: pytest.Config) -> str:
+    return config.getoption("transport", None) or ""
 
 
 @pytest.hookimpl(optionalhook=True)

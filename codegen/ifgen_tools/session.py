@@ -162,9 +162,9 @@ def open_session(
     try:
         executor.add_node(node)
         if chosen == "local" and discovery.lacks_zenoh(context.get_domain_id()):
-            from ifgen_runtime.installation import add_extra
+            from ifgen_runtime.installation import add_runtime
 
-            note = f"note: other processes are not reached without Zenoh. Install it: {add_extra('net')}"
+            note = f"note: other processes are not reached without Zenoh. Install it: {add_runtime()}"
             print(note, file=sys.stderr)
         yield Session(chosen, context, node, executor)
     except ToolError as error:

@@ -186,7 +186,7 @@ def test_without_zenoh(ifgen: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     done = ifgen("router")
     assert (done.code, done.out) == (2, "")
     assert done.err.startswith("error[no-zenoh]: a router needs Zenoh\n  = help: run `")
-    assert installing.add_extra("net") in " ".join(done.err.split())
+    assert installing.add_runtime() in " ".join(done.err.split())
 
 
 def test_options_come_before_single_values_before_the_file(tmp_path: Path) -> None:

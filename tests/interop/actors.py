@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import ClassVar
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "codegen/ifgen/interop/programs"))
+sys.path.insert(0, str(Path(__file__).parent / "bench/programs"))
 from conversation import converse
 
 HOW = sys.argv.pop(1)

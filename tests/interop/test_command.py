@@ -1,4 +1,4 @@
-"""`ifgen interop`: its table, its options and its exit codes."""
+"""`make interop`: its table, its options and its exit codes."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import pytest
-from ifgen.cli.main import main
-from ifgen.interop import environments, matrix
-from ifgen.interop.outcomes import Cell, Check, Feature, Outcome, Row
-from ifgen.interop.peers import PEERS, Peer
+from click.testing import CliRunner, Result
+
+from tests.interop.bench import __main__ as command
+from tests.interop.bench import environments
+from tests.interop.bench.outcomes import Cell, Check, Feature, Outcome, Row
+from tests.interop.bench.peers import Peer
 
 WORKS = Check("to us", Outcome.WORKS)
 LACKS = Check(
@@ -41,17 +43,22 @@ class Found:
             yield Row(peer.name, {"x": "10.11.12"}, tuple(cells))
 
 
+def run(*words: str) -> Result:
+    return CliRunner().invoke(command.interop, words)
+
+
 @pytest.fixture
 def found(monkeypatch: pytest.MonkeyPatch) -> Iterator[type[Found]]:
-    monkeypatch.setattr(matrix, "Matrix", Found)
+    monkeypatch.setattr(command, "Matrix", Found)
     yield Found
     Found.cells = ()
 
 
-def test_the_table_fits_a_terminal(found: type[Found], capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_table_fits_a_terminal(found: type[Found]) -> None:
     found.cells = ((WORKS,), (WORKS, LACKS), (LACKS,))
-    assert main(["interop"]) == 0
-    lines = capsys.readouterr().out.splitlines()
+    done = run()
+    assert done.exit_code == 0
+    lines = done.stdout.splitlines()
     assert max(map(len, lines)) <= 80
     assert lines[0].split() == ["topic", "service", "action", "param", "graph", "kept", "image", "buffer"]
     words = "zenoh-ros2-sdk 10.11.12 ok part - ok part - ok part"
@@ -60,19 +67,18 @@ def test_the_table_fits_a_terminal(found: type[Found], capsys: pytest.CaptureFix
     assert any(line.startswith("  service (from us), action (from us), graph (from us)") for line in lines)
 
 
-def test_what_is_not_installed_can_be(found: type[Found], capsys: pytest.CaptureFixture[str]) -> None:
+def test_what_is_not_installed_can_be(found: type[Found]) -> None:
     found.cells = ((Check("", Outcome.ABSENT, "there is no module 'pyzeros'"),),)
-    assert main(["interop", "--peer", "pyzeros"]) == 0
-    told = capsys.readouterr().out
-    assert "Not installed, or too old: pyzeros.\n`ifgen interop --install` makes" in told
+    done = run("--peer", "pyzeros")
+    assert done.exit_code == 0
+    assert "Not installed, or too old: pyzeros.\n`make interop INSTALL=1` makes" in done.stdout
 
 
-def test_what_should_work_and_does_not_is_an_error(
-    found: type[Found], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_should_work_and_does_not_is_an_error(found: type[Found]) -> None:
     found.cells = ((WORKS, Check("to us", Outcome.FAILS, "no message")),)
-    assert main(["interop", "--peer", "pyzeros", "--feature", "topic", "--format", "json"]) == 1
-    assert json.loads(capsys.readouterr().out) == [
+    done = run("--peer", "pyzeros", "--feature", "topic", "--format", "json")
+    assert done.exit_code == 1
+    assert json.loads(done.stdout) == [
         {
             "peer": "pyzeros",
             "versions": {"x": "10.11.12"},
@@ -91,33 +97,30 @@ def test_what_should_work_and_does_not_is_an_error(
 
 
 @pytest.mark.parametrize("python", ["nobody=/bin/sh", "pyzeros", f"pyzeros={sys.prefix}/no"])
-def test_an_interpreter_that_cannot_be_is_refused(python: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["interop", "--python", python]) == 2
-    assert "expected one of dora-rs, " in capsys.readouterr().err
+def test_an_interpreter_that_cannot_be_is_refused(python: str) -> None:
+    done = run("--python", python)
+    assert done.exit_code == 2
+    assert "expected one of dora-rs, " in done.stderr
 
 
-def test_the_command_knows_all_peers_and_features() -> None:
-    from ifgen.cli.running import interop
-
-    assert tuple(peer.name for peer in PEERS) == interop._PEERS
-    assert list(Feature) == list(interop._FEATURES)
+def test_the_command_knows_all_features() -> None:
+    assert list(Feature) == list(command._FEATURES)
 
 
-def test_what_pip_cannot_install_is_said_once(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_pip_cannot_install_is_said_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
     monkeypatch.setattr(environments.resources, "cache_folder", lambda: tmp_path)
     monkeypatch.setattr(environments.venv, "create", lambda folder, **_: None)
     failing = tmp_path / "python"
     failing.write_text("#!/bin/sh\necho 'ERROR: No matching distribution' >&2\nexit 1\n")
     failing.chmod(0o755)
     monkeypatch.setattr(environments, "_python", lambda name: failing)
-    assert main(["interop", "--peer", "pyzeros", "--install"]) == 1
-    said = capsys.readouterr().err
-    assert "pyzeros could not be installed: ERROR: No matching distribution" in said
-    assert "Traceback" not in said
+    done = run("--peer", "pyzeros", "--install")
+    assert done.exit_code == 1
+    assert "pyzeros could not be installed: ERROR: No matching distribution" in done.stderr
+    assert isinstance(done.exception, SystemExit)
 
 
-def test_help_fits(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["interop", "--help"]) == 0
-    assert max(map(len, capsys.readouterr().out.splitlines())) <= 80
+def test_help_fits() -> None:
+    done = run("--help")
+    assert done.exit_code == 0
+    assert max(map(len, done.stdout.splitlines())) <= 80

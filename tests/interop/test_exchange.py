@@ -10,8 +10,9 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-from ifgen.interop import exchange
-from ifgen.interop.exchange import Absent, Failed, Lacking, Program
+
+from tests.interop.bench import exchange
+from tests.interop.bench.exchange import Absent, Failed, Lacking, Program
 
 ACTOR = str(Path(__file__).parent / "actors.py")
 

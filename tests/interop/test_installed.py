@@ -5,9 +5,10 @@ from __future__ import annotations
 import sys
 
 import pytest
-from ifgen.interop.matrix import Matrix
-from ifgen.interop.outcomes import Feature, Outcome
-from ifgen.interop.peers import PEERS
+
+from tests.interop.bench.matrix import Matrix
+from tests.interop.bench.outcomes import Feature, Outcome
+from tests.interop.bench.peers import PEERS
 
 pytest.importorskip("zenoh")
 

@@ -8,12 +8,13 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import pytest
-from ifgen.interop import definitions, features, samples
-from ifgen.interop.comparison import difference
-from ifgen.interop.exchange import Absent, Actor, Failed, Lacking
-from ifgen.interop.matrix import Matrix
-from ifgen.interop.outcomes import Cell, Feature, Outcome
-from ifgen.interop.peers import PEERS, Peer
+
+from tests.interop.bench import definitions, features, samples
+from tests.interop.bench.comparison import difference
+from tests.interop.bench.exchange import Absent, Actor, Failed, Lacking
+from tests.interop.bench.matrix import Matrix
+from tests.interop.bench.outcomes import Cell, Feature, Outcome
+from tests.interop.bench.peers import PEERS, Known, Peer
 
 pytest.importorskip("zenoh")
 
@@ -65,7 +66,7 @@ def installed_once() -> Iterator[None]:
 
 def matrix_of(monkeypatch: pytest.MonkeyPatch, theirs: Callable[[], Actor], wire: Wire) -> Matrix:
     monkeypatch.setattr(features, "_LIMIT", 0.05)
-    monkeypatch.setattr(Matrix, "_ours", lambda self: Half(wire, "ours"))
+    monkeypatch.setattr(Matrix, "_ours", lambda self, peer: Half(wire, "ours"))
     monkeypatch.setattr(Matrix, "_theirs", lambda self, peer: theirs())
     return Matrix({})
 
@@ -114,14 +115,30 @@ def test_what_is_lost_repeated_or_changed_fails(
     assert found.checks[0].reason == words
 
 
-def test_what_is_known_to_be_wrong_does_not_fail(monkeypatch: pytest.MonkeyPatch) -> None:
-    known = {(Feature.TOPIC, "String to us"): "it talks to nobody"}
-    peer = Peer("theirs", "none.py", ("theirs",), (1,), types=(samples.STRING,), known=known)
-    found = cell(monkeypatch, lambda number, value: [value] if number > 1 else [], peer=peer)
-    assert (found.checks[0].outcome, found.word) == (Outcome.WORKS, "ok")  # it is tried all the same
-    found = cell(monkeypatch, lambda number, value: [], peer=peer)
-    assert found.checks[0].outcome is Outcome.LACKING
-    assert found.checks[0].reason == "it talks to nobody (no message within 0.05 s)"
+def known(error: str, *, sometimes: bool = False) -> Peer:
+    failure = Known("it talks to nobody", error, sometimes)
+    return Peer(
+        *("theirs", "none.py", ("theirs",), (1,)),
+        types=(samples.STRING,),
+        known={(Feature.TOPIC, "String to us"): failure},
+    )
+
+
+@pytest.mark.parametrize(
+    ("peer", "works", "outcome", "reason"),
+    [
+        (known("no message"), False, Outcome.LACKING, "it talks to nobody (no message within 0.05 s)"),
+        (known("it crashed"), False, Outcome.FAILS, "no message within 0.05 s"),
+        (known("no message"), True, Outcome.FAILS, "it works, and is listed as known: it talks to nobody"),
+        (known("no message", sometimes=True), True, Outcome.WORKS, ""),
+    ],
+    ids=["fails so", "fails otherwise", "works", "works sometimes"],
+)
+def test_a_known_failure_has_to_be_the_known_one(
+    monkeypatch: pytest.MonkeyPatch, peer: Peer, works: bool, outcome: Outcome, reason: str
+) -> None:
+    found = cell(monkeypatch, lambda number, value: [value] if works else [], peer=peer)
+    assert (found.checks[0].outcome, found.checks[0].reason) == (outcome, reason)
 
 
 def test_what_it_lacks_and_what_is_too_old(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -206,10 +206,8 @@ def test_outside_of_a_launch() -> None:
         (["a", ":=5"], 2, "the argument ':=5' has no name: arguments are NAME:=VALUE"),
         (["bringup", "b.launch.py"], 1, "has no file 'b.launch.py'\n  = help: it has a.launch.py, a.launch.py"),
         (["bringup", "a.launch.py"], 1, "has 'a.launch.py' twice: "),
-        (["--one-process", "--transport", "rclpy", "x.py"], 1, "--one-process needs the local transport"),
-        (["--one-process", "x.py", "transport:=rclpy"], 1, "--one-process needs the local transport"),
     ],
-    ids=range(7),
+    ids=range(5),
 )  # fmt: skip
 def test_command_line(words: list[str], code: int, message: str, tmp_path: Path) -> None:
     if "rclpy" in " ".join(words) and find_spec("rclpy") is None:

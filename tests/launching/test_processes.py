@@ -236,24 +236,6 @@ def test_nothing_is_left_behind(number: signal.Signals, code: int, tmp_path: Pat
     assert gone(group)
 
 
-@pytest.mark.slow
-def test_all_nodes_in_one_process(tmp_path: Path) -> None:
-    text = (
-        "<launch><node exec='talker.py' name='a' output='screen'/><node exec='talker.py' name='b'/>"
-        "<executable cmd='true'/></launch>"
-    )
-    code, lines = launch(tmp_path, text, "--one-process")
-    assert code == 0
-    assert {"[nodes-1] /a 1.0 ['--ros-args']", "[nodes-1] /b 1.0 ['--ros-args']"} <= set(lines)
-    respawned = "<launch>\n<node exec='talker.py' respawn='true'/></launch>"
-    code, lines = launch(tmp_path, respawned, "--one-process")
-    assert code == 1
-    assert (
-        "a.launch.xml:2: Node(executable='talker.py') cannot run with --one-process: it is respawned"
-        in lines[1]
-    )
-
-
 MANAGED = """
 import rclpy
 from rclpy.lifecycle import LifecycleNode

@@ -41,7 +41,7 @@ def programs(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     python = folder / "bin" / "python"
     pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--find-links", built)
     run(*pip, "--no-index", "--no-deps", *OURS, cwd=folder)
-    run(*pip, "ifgen-ros[net,ros]", cwd=folder, limit=600)
+    run(*pip, "ifgen-ros[ros]", cwd=folder, limit=600)
     return folder / "bin"
 
 

@@ -1,7 +1,6 @@
-"""Ordinary programs print and end under `ifgen run` as they do under Python: alone, in company, on real rclpy.
+"""Ordinary programs print and end under `ifgen run` as they do under Python: alone, beside another, on real rclpy.
 
-They are in `programs/`. In company, another program (`bystander/`) runs at the same time and has everything that
-they have, under the same names.
+They are in `programs/`; the one beside them is `spins.py`.
 """
 
 from __future__ import annotations
@@ -23,11 +22,10 @@ from tests.real_rclpy import again_if_crashed
 
 HERE = Path(__file__).parent
 PROGRAMS = HERE / "programs"
-BYSTANDER = str(HERE / "bystander/bystander.py")
 LIMIT = 60.0  # [s] for one run
 MISSING = [name for name in ("rclpy", "ifgen_native") if importlib.util.find_spec(name) is None]
 
-in_company = pytest.mark.parametrize(
+on_both = pytest.mark.parametrize(
     "transport",
     [
         "local",
@@ -107,8 +105,8 @@ def alone(folder: Path, *words: str, interrupt: int = 0) -> Outcome:
 
 
 def beside(folder: Path, transport: str, *words: str, interrupt: int = 0) -> Outcome:
-    command = ["-m", "ifgen", "run", "--transport", transport, BYSTANDER, ":", *words]
-    return run(folder, *command, interrupt=interrupt, WAIT_FOR=str(folder / "bystander_is_ready"))
+    command = ["-m", "ifgen", "run", "--transport", transport, "spins.py", ":", *words]
+    return run(folder, *command, interrupt=interrupt, WAIT_FOR=str(folder / "spins"))
 
 
 ORDINARY = [
@@ -184,18 +182,18 @@ def test_alone(words: list[str], tmp_path: Path) -> None:
     assert alone(tmp_path, *words) == as_python(tmp_path, *words)
 
 
-@in_company
+@on_both
 @pytest.mark.parametrize("words", [*map(quick, ORDINARY)], ids=named)
-def test_in_company(words: list[str], transport: str, tmp_path: Path) -> None:
+def test_beside_another(words: list[str], transport: str, tmp_path: Path) -> None:
     if transport == "rclpy" and words[-1] == "many":
         pytest.skip("the real MultiThreadedExecutor never looks at the SystemExit of its threads")
     assert beside(tmp_path, transport, *words) == as_python(tmp_path, *words)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send Ctrl-C to a process")
-@in_company
+@on_both
 @pytest.mark.parametrize("how", [*map(quick, INTERRUPTED)])
-def test_interrupted_in_company(how: str, transport: str, tmp_path: Path) -> None:
+def test_interrupted_beside_another(how: str, transport: str, tmp_path: Path) -> None:
     number = signal.SIGTERM if how.endswith("TERM") else signal.SIGINT
     words = ["signals.py", how]
     outcome = beside(tmp_path, transport, *words, interrupt=number)

@@ -140,7 +140,7 @@ def _other_processes() -> Finding:
     """Whether the local transport leaves its process."""
     number = _version("eclipse-zenoh")
     if number is None:
-        return Finding("other processes", "not reached: Zenoh is missing", installing.add_extra("net"))
+        return Finding("other processes", "not reached: Zenoh is missing", installing.add_runtime())
     found, advice = other_processes.look()
     return Finding("other processes", f"{found} (Zenoh {number})", advice)
 

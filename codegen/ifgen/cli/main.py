@@ -104,7 +104,6 @@ class _Commands(click.Group):
             "generate",
             "graph",
             "init",
-            "interop",
             "lock",
             "new",
             "nodl",
@@ -117,7 +116,6 @@ class _Commands(click.Group):
         "breaking": "evolution.breaking",
         "demo": "running.demo",
         "diff": "evolution.diff",
-        "interop": "running.interop",
         "lock": "evolution.lock",
         "paths": "editors",
         "router": "running.router",
@@ -283,10 +281,9 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     "--lockstep",
     "in_lockstep",
     is_flag=True,
-    help="Each program in a process, with one virtual time: the same run every time (local transport).",
+    help="One virtual time for all programs: the same run every time (local transport).",
 )
 @click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
-@click.option("--until-all-end", is_flag=True, hidden=True)  # `ifgen launch --one-process`
 @click.argument(
     "program",
     metavar="FILE|-m MODULE|PACKAGE NODE [ARGS]...",
@@ -298,12 +295,11 @@ def run(
     transport: Literal["local", "rclpy", "auto"],
     in_lockstep: bool,
     generate_first: bool,
-    until_all_end: bool,
     program: tuple[str, ...],
 ) -> int:
     """Run programs written for rclpy, with `:` between them.
 
-    Each behaves as if it ran alone. When the last one ends, the others are interrupted as by Ctrl-C. For
+    Each runs in a process of its own. When the last one ends, the others are interrupted as by Ctrl-C. For
     example: `ifgen run server.py : client.py 41 1`. All arguments after FILE or MODULE belong to the program,
     including --ros-args.
 
@@ -321,9 +317,7 @@ def run(
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
     programs = running.split(program, settings.output)
-    return running.run(
-        programs, transport, settings.output, in_lockstep=in_lockstep, until_all_end=until_all_end
-    )
+    return running.run(programs, transport, settings.output, in_lockstep=in_lockstep)
 
 
 def _looked_at(findings: Findings) -> str:

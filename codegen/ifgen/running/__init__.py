@@ -1,1 +1,1 @@
-"""Runs programs written for rclpy: one as Python would, several in one process or in a process each."""
+"""Runs programs written for rclpy: one as Python would, several in a process each."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from io import TextIOWrapper
 from typing import Any
 
 from ifgen.running import processes
@@ -18,6 +19,7 @@ def run(program: Program) -> int:
     try:
         if note is not None:
             processes.let_signals_come()
+            _write_whole_lines()
         program.execute()
     except BaseException as error:
         ending = error
@@ -30,6 +32,13 @@ def run(program: Program) -> int:
         tell(ending)
         return exit_code(ending)
     return 0
+
+
+def _write_whole_lines() -> None:
+    """Write each line at once, also to a file or a pipe: other programs write there, too."""
+    stdout: object = sys.stdout
+    if isinstance(stdout, TextIOWrapper):  # None, where there is no output
+        stdout.reconfigure(line_buffering=True)
 
 
 def _be_quiet_when(is_dismissed: Callable[[], bool]) -> None:

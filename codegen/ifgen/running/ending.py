@@ -15,7 +15,7 @@ PATIENCE = 5.0
 """Seconds that interrupted programs have for ending, all at once."""
 
 _HERE = Path(__file__).parent
-IMPORTING = {importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
+_IMPORTING = {importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
 """The files of Python's own part of an import, as frames name them."""
 
 
@@ -47,7 +47,7 @@ def tell(ending: BaseException) -> None:
         return
     each: BaseException | None = ending
     while each is not None:
-        each.__traceback__ = without_ours(each.__traceback__)
+        each.__traceback__ = _without_ours(each.__traceback__)
         each = each.__cause__ or each.__context__
     hook = sys.excepthook
     if hook is not sys.__excepthook__ or sys.stderr is None or sys.stderr.isatty():
@@ -57,19 +57,19 @@ def tell(ending: BaseException) -> None:
         print("".join(traceback.format_exception(ending)), end="", file=sys.stderr, flush=True)
 
 
-def without_ours(trace: TracebackType | None) -> TracebackType | None:
+def _without_ours(trace: TracebackType | None) -> TracebackType | None:
     """A traceback without the frames of this package, which run a program and are no part of it."""
     outside = trace
-    while outside is not None and (is_ours(outside) or outside.tb_frame.f_code.co_filename in IMPORTING):
+    while outside is not None and (_is_ours(outside) or outside.tb_frame.f_code.co_filename in _IMPORTING):
         outside = outside.tb_next
     frame = outside
     while frame is not None:
-        while frame.tb_next is not None and is_ours(frame.tb_next):
+        while frame.tb_next is not None and _is_ours(frame.tb_next):
             frame.tb_next = frame.tb_next.tb_next
         frame = frame.tb_next
     return outside
 
 
-def is_ours(trace: TracebackType) -> bool:
+def _is_ours(trace: TracebackType) -> bool:
     """Whether a frame is one of this package."""
     return Path(trace.tb_frame.f_code.co_filename).parent == _HERE

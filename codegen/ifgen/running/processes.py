@@ -1,22 +1,33 @@
-"""Runs each of several programs in a process: real rclpy has one default context in each."""
+"""Runs each of several programs in a process: `ifgen run server.py : client.py 41 1`."""
 
 from __future__ import annotations
 
 import os
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
+from typing import Literal
 
+from ifgen.diagnostics import UsageError
 from ifgen.running.ending import INTERRUPTED, PATIENCE
-from ifgen.running.program import Program
 
 _STEP = 0.2  # [s]
+_CHOOSE_PLACE = (
+    "ROS_AUTOMATIC_DISCOVERY_RANGE",
+    "ROS_STATIC_PEERS",
+    "ZENOH_SESSION_CONFIG_URI",
+    "ZENOH_CONFIG_OVERRIDE",
+)
+"""The environment variables by which a user decides where programs meet."""
 NOTE = "IFGEN_DISMISSED"
 """The environment variable that names a file, which exists once ifgen itself interrupts the program."""
 NextSignal = Callable[[float], tuple[int, bool] | None]
@@ -53,19 +64,54 @@ def signals_wait() -> Generator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def run(programs: Sequence[Program]) -> int:
-    """Run programs on real rclpy until the last one ends; returns the worst of their exit codes."""
-    command = [sys.executable, "-m", "ifgen", "run", "--transport", "rclpy"]
-    with tempfile.TemporaryDirectory(prefix="ifgen-run-") as folder:
+def run(programs: Sequence[tuple[str, Sequence[str]]], transport: Literal["local", "rclpy"]) -> int:
+    """Run programs, each a name and words of `ifgen run`, until the last one ends.
+
+    Returns the worst of their exit codes.
+    """
+    command = [sys.executable, "-m", "ifgen", "run", "--transport", transport]
+    with tempfile.TemporaryDirectory(prefix="ifgen-run-") as folder, _meeting_place(transport) as place:
         note = Path(folder) / "dismissed"
-        environment = {**os.environ, NOTE: str(note)}
+        environment = {**os.environ, **place, NOTE: str(note)}
         with _signals() as next_signal:
-            processes = [subprocess.Popen([*command, *p.words], env=environment) for p in programs]
+            processes = [subprocess.Popen([*command, *words], env=environment) for _, words in programs]
             dismissed = _wait(processes, note, next_signal)
         return max(
-            _code(process, program, dismissed=process in dismissed)
-            for process, program in zip(processes, programs, strict=True)
+            _code(process, name, dismissed=process in dismissed)
+            for process, (name, _) in zip(processes, programs, strict=True)
         )
+
+
+@contextmanager
+def _meeting_place(transport: Literal["local", "rclpy"]) -> Generator[dict[str, str]]:
+    """Keep a router as long as programs run that cannot find each other otherwise; yields their variables."""
+    chosen = any(os.environ.get(name) for name in _CHOOSE_PLACE)
+    if transport == "rclpy" or chosen or _has_unix_sockets():
+        yield {}
+        return
+    from ifgen.running.router import open_router  # late: most systems need none
+
+    try:
+        endpoint = f"tcp/127.0.0.1:{_free_port()}"
+        router = open_router(listen=[endpoint])
+    except UsageError:  # no Zenoh: the programs say so
+        yield {}
+        return
+    try:
+        yield {"ROS_STATIC_PEERS": endpoint}
+    finally:
+        router.close()
+
+
+def _has_unix_sockets() -> bool:
+    return hasattr(socket, "AF_UNIX")
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
 
 
 def _wait(
@@ -107,10 +153,19 @@ def _signals() -> Generator[NextSignal]:
 
     On most systems, a child that ends wakes a thread that waits for one.
     """
-    if not hasattr(signal, "sigtimedwait") or threading.current_thread() is not threading.main_thread():
-        yield _sleep
+    if threading.current_thread() is not threading.main_thread():
+        yield partial(_sleep, deque())
         return
     ending = {n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) is not signal.SIG_IGN}
+    if not hasattr(signal, "sigtimedwait"):  # on macOS and Windows
+        came: deque[int] = deque()
+        before = {number: signal.signal(number, lambda number, _: came.append(number)) for number in ending}
+        try:
+            yield partial(_sleep, came)
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+        return
 
     def wait(timeout: float) -> tuple[int, bool] | None:
         found = signal.sigtimedwait({*ending, signal.SIGCHLD}, timeout)
@@ -118,25 +173,26 @@ def _signals() -> Generator[NextSignal]:
             return None
         return found.si_signo, found.si_code == _FROM_TERMINAL
 
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {*ending, signal.SIGCHLD})
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {*ending, signal.SIGCHLD})
     try:
         yield wait
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
 
 
-def _sleep(timeout: float) -> tuple[int, bool] | None:
-    try:
-        time.sleep(timeout)
-    except KeyboardInterrupt:
-        return signal.SIGINT, sys.platform == "win32"  # which has it from its console only
-    return None
+def _sleep(came: deque[int], timeout: float) -> tuple[int, bool] | None:
+    """Wait where nobody says who sent a signal: what comes to a program in the foreground is a terminal's."""
+    time.sleep(timeout)
+    if not came:
+        return None
+    number = came.popleft()
+    return number, number == signal.SIGINT and sys.stdin is not None and sys.stdin.isatty()
 
 
-def _code(process: subprocess.Popen[bytes], program: Program, *, dismissed: bool) -> int:
+def _code(process: subprocess.Popen[bytes], name: str, *, dismissed: bool) -> int:
     code = process.poll()
     if code is None:
-        late = f"{program.name} did not end within {PATIENCE:.0f} s after Ctrl-C; ending it"
+        late = f"{name} did not end within {PATIENCE:.0f} s after Ctrl-C; ending it"
         print(f"ifgen: {late}", file=sys.stderr)
         process.kill()
         process.wait()

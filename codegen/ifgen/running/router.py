@@ -1,4 +1,4 @@
-"""A Zenoh router: where programs on several machines meet. It needs the extra `net`, and nothing of ROS."""
+"""A Zenoh router: where programs on several machines meet. It needs nothing of ROS."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ifgen.running.router_configuration import check_endpoint, configuration, en
 if TYPE_CHECKING:
     import zenoh
 
-# Late imports: Zenoh is an extra.
+# Late imports: Zenoh is not everywhere.
 
 _ANYWHERE: Final = "choose an endpoint of this machine, such as `--listen tcp/[::]:7447`"
 _ADVICE: Final = {
@@ -65,7 +65,7 @@ def open_router(
     try:
         import zenoh
     except ModuleNotFoundError:
-        advice = f"run `{installing.add_extra('net')}`"
+        advice = f"run `{installing.add_runtime()}`"
         raise UsageError([Diagnostic("no-zenoh", "a router needs Zenoh", help=advice)]) from None
     config = configuration(listen, connect, file, variables)
     listens = endpoints_of(config, "listen")

@@ -14,7 +14,7 @@ from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError, short
 if TYPE_CHECKING:
     import zenoh
 
-# Late imports: Zenoh is an extra.
+# Late imports: Zenoh is not everywhere.
 
 _PORT: Final = 7447
 DEFAULT_ENDPOINT: Final = f"tcp/127.0.0.1:{_PORT}"

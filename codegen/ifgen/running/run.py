@@ -15,7 +15,7 @@ from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.reading.listed_file import EXTENSIONS
 from ifgen.reading.storage import near_paths
-from ifgen.running import alone, company, lockstep, processes
+from ifgen.running import alone, lockstep, processes
 from ifgen.running.activation import ActivationError, folder_around, is_node_package, put_on_path
 from ifgen.running.ending import tell
 from ifgen.running.program import find
@@ -93,13 +93,12 @@ def run(
     generated: Path,
     *,
     in_lockstep: bool = False,
-    until_all_end: bool = False,
 ) -> int:
-    """Run programs until the last one ends, and return the worst of their exit codes.
+    """Run programs, each in a process, until the last one ends; return the worst of their exit codes.
 
     `generated` is a folder with the user's own packages, unless a program is in another; it may be missing.
-    `in_lockstep`: each in a process, with one virtual time for all. `until_all_end`: none of them ends the
-    others, where they share a process. Raises UsageError where there is no such transport, or program.
+    `in_lockstep`: with one virtual time for all. Raises UsageError where there is no such transport, or
+    program.
     """
     if in_lockstep:
         transport = _transport_of_lockstep(transport)
@@ -118,9 +117,8 @@ def run(
         return lockstep.run(programs)
     if len(programs) == 1:
         return alone.run(programs[0])
-    if chosen == "rclpy":
-        return processes.run(programs)
-    return company.run(programs, until_all_end=until_all_end)
+    named = [(program.name, words) for program, words in zip(programs, command_lines, strict=True)]
+    return processes.run(named, chosen)
 
 
 def _transport_of_lockstep(asked: str) -> Literal["local"]:

@@ -39,7 +39,6 @@ _LIBRARIES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_
     "-s", "--show-args", "--show-arguments", is_flag=True, help="Print the arguments, and run nothing."
 )
 @click.option("-p", "--print", "--print-description", "prints", is_flag=True, help="Print what it contains.")
-@click.option("--one-process", is_flag=True, help="All nodes in one process (local transport).")
 @click.option(
     "-a", "--show-all-subprocesses-output", "show_all", is_flag=True, help="All output on the screen."
 )
@@ -63,7 +62,6 @@ def launch(
     transport: Literal["local", "rclpy", "auto"],
     show_args: bool,
     prints: bool,
-    one_process: bool,
     show_all: bool,
     noninteractive: bool,
     launch_prefix: str,
@@ -92,13 +90,14 @@ def launch(
     from launch.actions import IncludeLaunchDescription
 
     from ifgen_tools.launching.errors import LaunchError, explained
+    from ifgen_tools.launching.running.host import LaunchHost
 
     context = LaunchContext(argv=given, noninteractive=noninteractive)
     configurations = {"launch-prefix": launch_prefix, "launch-prefix-filter": launch_prefix_filter}
     context.launch_configurations |= {name: value for name, value in configurations.items() if value}
     if show_all:
         os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
-    host = _host(context, output, chosen, one_process=one_process)
+    host = LaunchHost(context, output, chosen)
     if show_args or prints:
         return _describe(host, path, show_args=show_args)
     arguments = [word.split(":=", 1) for word in given]
@@ -165,21 +164,6 @@ def _path(paths: list[str], output: Path) -> str:
     if len(matching) > 1:
         raise ToolError(f"the package '{package}' has '{name}' twice: {matching[0]} and {matching[1]}")
     return str(matching[0])
-
-
-def _host(context: object, output: Path, transport: str, *, one_process: bool) -> LaunchHost:
-    from launch import LaunchContext
-
-    from ifgen_tools.launching.running.host import LaunchHost
-
-    assert isinstance(context, LaunchContext)
-    if not one_process:
-        return LaunchHost(context, output, transport)
-    if transport != "local":
-        raise ToolError("--one-process needs the local transport", "add `--transport local`")
-    from ifgen_tools.launching.running.together import TogetherHost
-
-    return TogetherHost(context, output, transport)
 
 
 def _describe(host: LaunchHost, path: str, *, show_args: bool) -> int:

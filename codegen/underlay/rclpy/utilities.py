@@ -11,7 +11,7 @@ from rclpy.context import Context
 from rclpy.impl import program
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
-g_context_lock = program.WHOLE_PROCESS.lock
+g_context_lock = program.current().lock
 
 
 def __getattr__(name: str) -> Any:

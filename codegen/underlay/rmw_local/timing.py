@@ -109,10 +109,6 @@ class Driver(Protocol):
         """Block this thread until it is woken (True) or it is `until` [ns, steady] (False; None: no end)."""
         ...
 
-    def rouse(self, thread_id: int) -> None:
-        """End the wait that a thread is in, if any: it raises what is due, or waits again."""
-        ...
-
 
 # A lock cannot, or should not, wait longer than this [s]; longer waits go in several steps.
 _LONGEST_SLEEP = min(threading.TIMEOUT_MAX, 1e6)
@@ -129,9 +125,6 @@ class SystemDriver:
     time_ns = staticmethod(time.time_ns)
     monotonic_ns = staticmethod(time.monotonic_ns)
 
-    def __init__(self) -> None:
-        self._waiting: dict[int, Waker] = {}  # by thread id
-
     def waker(self, *, lasting: bool = False) -> Waker:
         """Make an alarm; a lasting one with an eventfd, if there is one."""
         if lasting:
@@ -141,26 +134,15 @@ class SystemDriver:
 
     def wait(self, waker: Waker, until: int | None) -> bool:
         """Block this thread until it is woken (True), or until the steady time (False; None: no end)."""
-        me = _thread.get_ident()
-        is_main = me == threading.main_thread().ident
+        is_main = _thread.get_ident() == threading.main_thread().ident
         longest = _LONGEST_OF_MAIN if is_main else _LONGEST_SLEEP
-        self._waiting[me] = waker
-        try:
-            while until is not None or is_main:
-                left = inf if until is None else (until - self.monotonic_ns()) / 1e9
-                if left <= longest:
-                    return waker.sleep(max(left, 0.0))
-                if waker.sleep(longest):
-                    return True
-            return waker.sleep(-1)
-        finally:
-            self._waiting.pop(me, None)
-
-    def rouse(self, thread_id: int) -> None:
-        """Wake the waiting thread, if it waits here."""
-        waker = self._waiting.get(thread_id)
-        if waker is not None:
-            waker.wake()
+        while until is not None or is_main:
+            left = inf if until is None else (until - self.monotonic_ns()) / 1e9
+            if left <= longest:
+                return waker.sleep(max(left, 0.0))
+            if waker.sleep(longest):
+                return True
+        return waker.sleep(-1)
 
 
 SYSTEM: Driver = SystemDriver()

@@ -166,12 +166,6 @@ class VirtualDriver:
             return self._wait_really(waker, until)
         return me.was_woken
 
-    def rouse(self, thread_id: int) -> None:
-        """Wake a thread that waits."""
-        member = self._members.get(thread_id)
-        if member is not None and member.waker is not None:
-            member.waker.wake()
-
     def announce(self, thread: threading.Thread) -> Member:
         """Make a member of a thread that is about to start."""
         with self._lock:

@@ -20,6 +20,8 @@ from rmw_local.virtual_time import virtual_time
 
 from tests.rclpy.inside import lockstep_programs as programs
 
+pytestmark = pytest.mark.slow  # each starts processes
+
 
 def test_what_is_sent_at_one_moment_arrives_by_the_names_of_nodes() -> None:
     quick, slow, last = (partial(programs.talker, *each) for each in (("b", 0.1), ("c", 0.2), ("a", 0.1)))

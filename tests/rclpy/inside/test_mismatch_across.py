@@ -37,7 +37,7 @@ NewWalk = class_from_text(
 ASKED = "/get_type_description"
 
 
-pytestmark = pytest.mark.usefixtures("no_adapters", "heard")
+pytestmark = [pytest.mark.usefixtures("no_adapters", "heard"), pytest.mark.slow]
 
 
 @pytest.fixture

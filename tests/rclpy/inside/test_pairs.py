@@ -26,6 +26,7 @@ from rmw_local.mismatch import telling
 
 from tests.evolution.corpus import Edit, edits, messages
 
+pytestmark = pytest.mark.slow  # the widest sample of pairs; `contract` has something of each
 ROOT = Path(__file__).resolve().parents[3]
 NAME = "edited_msgs/msg/Edited"
 EACH = 2  # edits of each rule

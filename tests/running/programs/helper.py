@@ -1,4 +1,4 @@
-"""A module next to the programs; in company it waits until the others have done what they can."""
+"""A module next to the programs; it waits until the program beside them spins, if there is one."""
 
 import dataclasses
 import os

@@ -47,7 +47,7 @@ def router(listen: tuple[str, ...], connect: tuple[str, ...], config: Path | Non
 
     Programs on several machines meet there: those on our local transport with ROS_STATIC_PEERS=HOST, and
     those of ROS 2 with rmw_zenoh. It takes the place of rmw_zenohd. An ENDPOINT is tcp/HOST:PORT or
-    tls/HOST:PORT. It needs the extra `net`.
+    tls/HOST:PORT.
     """
     from ifgen.running.router import open_router
 

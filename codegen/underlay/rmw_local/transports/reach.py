@@ -187,9 +187,9 @@ class Reach:
             try:
                 self._link = self._opened()
             except ModuleNotFoundError:
-                from ifgen_runtime.installation import add_extra
+                from ifgen_runtime.installation import add_runtime
 
-                self._say_later(f"without Zenoh. Install it: {add_extra('net')}")
+                self._say_later(f"without Zenoh. Install it: {add_runtime()}")
             except ConfigurationError as error:
                 say(f"other processes are not reached: {error}")
             except TransportError as error:

@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
-    from ifgen.interop.programs.conversation import Cannot, Receiver, Value, converse, zenoh_session
+    from tests.interop.bench.programs.conversation import Cannot, Receiver, Value, converse, zenoh_session
 else:
     from conversation import Cannot, Receiver, Value, converse, zenoh_session
 

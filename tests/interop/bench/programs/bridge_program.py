@@ -9,8 +9,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ifgen.interop.programs.conversation import Value, converse
-    from ifgen.interop.programs.dora_program import SERVICES, DoraProgram, short
+    from tests.interop.bench.programs.conversation import Value, converse
+    from tests.interop.bench.programs.dora_program import SERVICES, DoraProgram, short
 else:
     from conversation import Value, converse
     from dora_program import SERVICES, DoraProgram, short

@@ -1,4 +1,4 @@
-"""`ifgen interop`: exchanges with other implementations of the conventions of rmw_zenoh, as a table."""
+"""`make interop`: exchanges with other implementations of the conventions of rmw_zenoh, as a table."""
 
 from __future__ import annotations
 
@@ -8,16 +8,15 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import click
 
-from ifgen.writing.interruption import terminable
-
-if TYPE_CHECKING:
-    from ifgen.interop.outcomes import Cell, Row
-
-# Late imports: --help needs none of the exchanges.
+from tests.interop.bench.environments import CannotInstall
+from tests.interop.bench.environments import install as install_peer
+from tests.interop.bench.matrix import Matrix
+from tests.interop.bench.outcomes import Cell, Feature, Outcome, Row
+from tests.interop.bench.peers import PEERS
 
 _FEATURES: Final = {
     "topic": "topic",
@@ -30,7 +29,7 @@ _FEATURES: Final = {
     "Lyrical's buffer keys": "buffer",
 }
 """The column of each feature."""
-_PEERS: Final = ("dora-rs", "zenoh-ros2-sdk", "pyzeros", "pamoja-ros2", "Jazzy", "Kilted", "Lyrical")
+_PEERS: Final = tuple(peer.name for peer in PEERS)
 _LINE: Final = 80
 _LONGEST: Final = 5  # of the words in the table
 _NOTES: Final = (
@@ -43,7 +42,7 @@ _NOTES: Final = (
 
 @click.command(
     context_settings={"help_option_names": ["-h", "--help"]},
-    epilog="Example: ifgen interop --peer pyzeros --feature topic",
+    epilog="Example: python -m tests.interop.bench --peer pyzeros --feature topic",
 )
 @click.option(
     "--peer",
@@ -78,33 +77,30 @@ _NOTES: Final = (
 )
 def interop(
     names: tuple[str, ...], columns: tuple[str, ...], pythons: tuple[str, ...], install: bool, format_: str
-) -> int:
-    """Exchange messages with others that speak like rmw_zenoh.
+) -> None:
+    """Exchange messages with others that speak like rmw_zenoh, or DDS.
 
     One side is a node on our local transport, the other a small program on the public API of dora-rs,
     zenoh-ros2-sdk, pyzeros, or pamoja-ros2, and real rclpy on DDS (Jazzy, Kilted) behind a bridge of dora-rs.
-    A router on a free port of this machine is between them. Exits with 1 if something fails that should work.
-    What is not installed does not fail. It needs the extra `net`.
+    Cyclone DDS meets our classes on real rclpy.
+    A router on a free port of this machine is between them. Exits with 1 if something fails that should work,
+    or works that is listed as failing. What is not installed does not fail.
     """
-    from ifgen.interop.environments import install as install_peer
-    from ifgen.interop.matrix import Matrix
-    from ifgen.interop.outcomes import Feature
-    from ifgen.interop.peers import PEERS
-
     chosen = [peer for peer in PEERS if not names or peer.name in names]
     features = [feature for feature in Feature if not columns or _FEATURES[feature] in columns]
-    with terminable():
-        if install:
-            for peer in chosen:
-                _report(f"installing {peer.name}")
-                install_peer(peer)
-        with Matrix(_by_name(pythons), _report) as matrix:
-            rows = list(matrix.rows(chosen, features))
+    try:
+        for peer in chosen if install else ():
+            _report(f"installing {peer.name}")
+            install_peer(peer)
+    except CannotInstall as error:
+        raise click.ClickException(str(error)) from None
+    with Matrix(_by_name(pythons), _report) as matrix:
+        rows = list(matrix.rows(chosen, features))
     if format_ == "json":
         print(json.dumps([asdict(row) for row in rows], indent=2))
     else:
         print("\n".join(lines(rows)))
-    return int(any(cell.word == "FAILS" for row in rows for cell in row.cells))
+    sys.exit(int(any(cell.word == "FAILS" for row in rows for cell in row.cells)))
 
 
 def lines(rows: Sequence[Row]) -> Iterable[str]:
@@ -123,12 +119,10 @@ def lines(rows: Sequence[Row]) -> Iterable[str]:
     if absent:
         yield ""
         yield textwrap.fill(f"Not installed, or too old: {', '.join(absent)}.", _LINE)
-        yield "`ifgen interop --install` makes an environment for each, of about 1 GB in all."
+        yield "`make interop INSTALL=1` makes an environment for each, of about 1 GB in all."
 
 
 def _is_absent(row: Row) -> bool:
-    from ifgen.interop.outcomes import Outcome
-
     return any(check.outcome is Outcome.ABSENT for cell in row.cells for check in cell.checks)
 
 
@@ -178,3 +172,7 @@ def _by_name(pythons: Iterable[str]) -> dict[str, str]:
 def _report(line: str) -> None:
     if sys.stderr.isatty():
         print(line, file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    interop()

@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
-    from ifgen.interop.programs.conversation import Receiver, Value, converse, is_bytes, plain, unpacked
+    from tests.interop.bench.programs.conversation import Receiver, Value, converse, is_bytes, plain, unpacked
 else:
     from conversation import Receiver, Value, converse, is_bytes, plain, unpacked
 

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar, get_type_hints
 
 if TYPE_CHECKING:
-    from ifgen.interop.programs.conversation import (
+    from tests.interop.bench.programs.conversation import (
         Cannot,
         Receiver,
         Value,

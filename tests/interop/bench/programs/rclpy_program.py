@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
-    from ifgen.interop.programs.conversation import (
+    from tests.interop.bench.programs.conversation import (
         Receiver,
         Value,
         converse,

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import os
+import re
 import socket
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final
 
 from ifgen import resources
 from ifgen.diagnostics import InputError
-from ifgen.interop import definitions, samples
-from ifgen.interop.bridged import Bridged
-from ifgen.interop.environments import python_of
-from ifgen.interop.exchange import Absent, Actor, Failed, Lacking, Program
-from ifgen.interop.features import Task, tasks
-from ifgen.interop.outcomes import Cell, Check, Feature, Outcome, Row
-from ifgen.interop.peers import Peer
 from ifgen.running.router import Router, open_router
+
+from tests.interop.bench import definitions, samples
+from tests.interop.bench.bridged import Bridged
+from tests.interop.bench.environments import python_of
+from tests.interop.bench.exchange import Absent, Actor, Failed, Lacking, Program
+from tests.interop.bench.features import Task, tasks
+from tests.interop.bench.outcomes import Cell, Check, Feature, Outcome, Row
+from tests.interop.bench.peers import Peer
 
 _PROGRAMS: Final = Path(__file__).parent / "programs"
 _DOMAINS: Final = 101  # those that DDS has ports for on every system, besides 0
@@ -80,7 +83,7 @@ class Matrix:
     def _checks(self, peer: Peer, feature: Feature, versions: dict[str, str]) -> list[Check]:
         """Do the checks of a feature. Raises Absent."""
         self._report(f"{peer.name}: {feature}")
-        stage = _Stage(self._ours, lambda: self._theirs(peer))
+        stage = _Stage(lambda: self._ours(peer), lambda: self._theirs(peer))
         try:
             return [
                 self._check(task, stage, peer, feature, versions)
@@ -93,6 +96,7 @@ class Matrix:
         self, task: Task, stage: _Stage, peer: Peer, feature: Feature, versions: dict[str, str]
     ) -> Check:
         """Do one check. Raises Absent."""
+        known = peer.known.get((feature, task.name))
         try:
             ours, theirs = stage.actors()
             versions.update(theirs.versions)
@@ -103,26 +107,26 @@ class Matrix:
             return Check(task.name, Outcome.LACKING, str(error))
         except Failed as error:
             stage.close()  # whoever fell silent, or is gone, is of no more use
-            known = peer.known.get((feature, task.name))
-            outcome = Outcome.FAILS if known is None else Outcome.LACKING
-            return Check(task.name, outcome, str(error) if known is None else f"{known} ({error})")
+            if known is None or not re.search(known.error, str(error)):
+                return Check(task.name, Outcome.FAILS, str(error))
+            return Check(task.name, Outcome.LACKING, f"{known.reason} ({error})")
+        if known is not None and not known.sometimes:
+            return Check(task.name, Outcome.FAILS, f"it works, and is listed as known: {known.reason}")
         return Check(task.name, Outcome.WORKS)
 
-    def _ours(self) -> Program:
-        words = [
-            sys.executable,
-            "-m",
-            "ifgen",
-            "run",
-            "--transport",
-            "local",
-            str(_PROGRAMS / "rclpy_program.py"),
-        ]
+    def _ours(self, peer: Peer) -> Program:
+        """Our node: on the local transport, or on real rclpy for a peer on DDS. Raises Absent and Failed."""
+        transport = "rclpy" if peer.on_dds else "local"
+        missing = [name for name in ("rclpy", "ifgen_native") if peer.on_dds and find_spec(name) is None]
+        if missing:
+            raise Absent(f"there is no module '{missing[0]}' for our node")
+        program = str(_PROGRAMS / "rclpy_program.py")
+        words = [sys.executable, "-m", "ifgen", "run", "--transport", transport, program]
         address = self._setting["router"].removeprefix("tcp/")
-        return self._program("our node", words, "ours", ROS_STATIC_PEERS=address)
+        return self._program("our node", words, "ours", ROS_STATIC_PEERS="" if peer.on_dds else address)
 
     def _theirs(self, peer: Peer) -> Actor:
-        node = peer.name.lower().replace("-", "_")
+        node = re.sub(r"\W", "_", peer.name.lower())
         if not peer.bridge:
             return self._peer(peer.name, peer.program, node)
         try:

@@ -1,4 +1,4 @@
-"""Runs each file and folder of `inside/` on each transport, and programs that import libraries."""
+"""Programs that import libraries, on each transport. The tests in `inside/` run in sessions with a transport."""
 
 from __future__ import annotations
 
@@ -6,9 +6,7 @@ import importlib.util
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -36,22 +34,6 @@ def run(*words: str | Path, **variables: str) -> subprocess.CompletedProcess[str
         timeout=TIME_LIMIT,
         check=False,
     )
-
-
-def _combinations() -> Iterator[Any]:
-    """Each file and folder on each transport; on real rclpy, one of them is enough for a quick run."""
-    for tests in sorted((HERE / "inside").glob("[!_]*")):
-        yield pytest.param(tests, "local", id=f"{tests.stem}-local")
-        slow = [] if tests.stem == "test_filters" else [pytest.mark.slow]
-        yield pytest.param(tests, "rclpy", id=f"{tests.stem}-rclpy", marks=[needs_rclpy, *slow])
-
-
-@pytest.mark.parametrize(("tests", "transport"), _combinations())
-def test_inside(tests: Path, transport: str, tmp_path: Path) -> None:
-    """Every test in the file or folder passes."""
-    words = ("-q", "-p", "no:cacheprovider", "--timeout=60", "--transport", transport, tests)
-    done = run("pytest", *words, IFGEN_INSIDE_TRANSPORT=transport, ROS_LOG_DIR=str(tmp_path))
-    assert done.returncode == 0, f"{done.stdout[-8000:]}\n{done.stderr[-4000:]}"
 
 
 @pytest.mark.parametrize("transport", TRANSPORTS)

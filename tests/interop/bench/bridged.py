@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from ifgen.interop import samples
-from ifgen.interop.exchange import Actor
+from tests.interop.bench import samples
+from tests.interop.bench.exchange import Actor
 
 _PARAMETER_SERVICES: Final = (
     ("get_parameters", samples.GET_PARAMETERS),

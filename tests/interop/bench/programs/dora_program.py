@@ -11,7 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
-    from ifgen.interop.programs.conversation import Receiver, Value, converse, is_bytes, packed, unpacked
+    from tests.interop.bench.programs.conversation import (
+        Receiver,
+        Value,
+        converse,
+        is_bytes,
+        packed,
+        unpacked,
+    )
 else:
     from conversation import Receiver, Value, converse, is_bytes, packed, unpacked
 

@@ -7,6 +7,7 @@ import importlib.util
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 import textwrap
@@ -121,24 +122,6 @@ def test_each_has_its_own_arguments_and_context(tmp_path: Path) -> None:
     assert sorted(result.stdout.splitlines()) == sorted(expected)
 
 
-def test_interruption_while_threads_start(tmp_path: Path) -> None:
-    """Python would raise in a thread that is just starting; the thread that starts it would wait for ever."""
-    starts = """
-        import threading
-        try:
-            while True:
-                open("begun", "w").close()
-                for _ in range(20):
-                    threading.Thread(target=int).start()
-        except KeyboardInterrupt:
-            print("interrupted")
-    """
-    last = "import os, time\nwhile not os.path.exists('begun'):\n    time.sleep(0.01)\n"
-    write(tmp_path, starts=starts, last=last)
-    result = run(tmp_path, "starts.py", ":", "last.py")
-    assert (result.returncode, result.stdout, result.stderr) == (0, "interrupted\n", "")
-
-
 def test_last_one_ends_the_others(tmp_path: Path) -> None:
     waits = """
         import os, rclpy, time
@@ -146,7 +129,8 @@ def test_last_one_ends_the_others(tmp_path: Path) -> None:
             time.sleep(0.01)
         rclpy.init()
         node = rclpy.create_node("last")
-        assert "spinner" in node.get_node_names()
+        while "spinner" not in node.get_node_names():
+            time.sleep(0.01)
         node.destroy_node()
         rclpy.shutdown()
         print("last: end")
@@ -165,7 +149,6 @@ def test_last_one_ends_the_others(tmp_path: Path) -> None:
         *(
             pytest.param(waiting, printed, marks=pytest.mark.slow)
             for waiting, printed in (
-                ("rclpy.spin_once(node, timeout_sec=50)", "interrupted or shut down"),
                 ("node.get_clock().sleep_for(Duration(seconds=50))", "interrupted or shut down"),
                 ("node.create_client(Trigger, 'nobody').wait_for_service()", "interrupted or shut down"),
                 ("sum(range(1000))", "interrupted"),
@@ -263,6 +246,83 @@ def test_what_cannot_be_run_is_told_before_anything_runs(tmp_path: Path) -> None
         assert "runner.py" not in result.stderr, f"a traceback for a user's mistake: {result.stderr}"
 
 
+CHAPTER = {
+    "server": """
+        import rclpy
+        from example_interfaces.srv import AddTwoInts
+        def add(request, response):
+            response.sum = request.a + request.b
+            return response
+        rclpy.init()
+        node = rclpy.create_node("server")
+        node.create_service(AddTwoInts, "add_two_ints", add)
+        try:
+            rclpy.spin(node)
+        except KeyboardInterrupt:
+            pass
+    """,
+    "client": """
+        import sys
+        import rclpy
+        from example_interfaces.srv import AddTwoInts
+        rclpy.init()
+        node = rclpy.create_node("client")
+        client = node.create_client(AddTwoInts, "add_two_ints")
+        while not client.wait_for_service(timeout_sec=1.0):
+            pass
+        future = client.call_async(AddTwoInts.Request(a=int(sys.argv[1]), b=int(sys.argv[2])))
+        rclpy.spin_until_future_complete(node, future)
+        print("sum", future.result().sum)
+    """,
+}
+
+
+@pytest.mark.slow
+def test_a_server_and_its_client_meet_whenever_they_start(tmp_path: Path) -> None:
+    write(tmp_path, **CHAPTER)
+    for _ in range(20):
+        result = run(tmp_path, "server.py", ":", "client.py", "41", "1")
+        assert (result.returncode, result.stdout, result.stderr) == (0, "sum 42\n", "")
+
+
+def test_lines_stay_whole(tmp_path: Path) -> None:
+    """Python would write them in blocks, which end anywhere."""
+    prints = """
+        import sys
+        for number in range(600):
+            print(sys.argv[1], number, "a line that two programs print at the same time")
+        print(sys.argv[1], "is done")
+    """
+    write(tmp_path, prints=prints)
+    result = run(tmp_path, "prints.py", "one", ":", "prints.py", "two")
+    text = "a line that two programs print at the same time"
+    for who in ("one", "two"):
+        mine = [line for line in result.stdout.splitlines() if line.startswith(f"{who} ")]
+        assert mine[:600] == [f"{who} {number} {text}" for number in range(len(mine[:600]))]
+    assert len(result.stdout.splitlines()) >= 601
+
+
+@pytest.mark.parametrize("zenoh", [True, False])
+def test_without_unix_sockets_they_meet_at_a_router(zenoh: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As on Windows. Without Zenoh, the programs themselves say that they reach nobody."""
+    from ifgen.running import processes
+
+    monkeypatch.setattr(processes, "_has_unix_sockets", lambda: False)
+    for name in processes._CHOOSE_PLACE:
+        monkeypatch.delenv(name, raising=False)
+    if not zenoh:
+        monkeypatch.setitem(sys.modules, "zenoh", None)
+    with processes._meeting_place("local") as place:
+        if not zenoh:
+            assert place == {}
+            return
+        host, _, port = place["ROS_STATIC_PEERS"].removeprefix("tcp/").partition(":")
+        with socket.create_connection((host, int(port)), timeout=LIMIT):
+            pass
+    with processes._meeting_place("rclpy") as place:
+        assert place == {}
+
+
 STUBBORN = """
 import pathlib, sys, time
 while True:
@@ -324,43 +384,6 @@ def test_who_is_interrupted_before_it_has_begun(transport: str, tmp_path: Path) 
     assert (result.returncode, result.stderr) == (0, "")
 
 
-def test_an_import_that_others_share_is_finished_first(tmp_path: Path) -> None:
-    """Otherwise the others would be left with half of a module."""
-    (tmp_path / "installed").mkdir()
-    slow = """
-        import pathlib, time
-        pathlib.Path("begun").touch()
-        time.sleep(0.5)
-        WHOLE = True
-        """
-    first = """
-        import sys
-        try:
-            import slow
-        except KeyboardInterrupt:
-            pass
-        sys.stdout.write(f"whole: {hasattr(sys.modules.get('slow'), 'WHOLE')}\\n")
-        """
-    last = """
-        import pathlib, time
-        while not pathlib.Path("begun").exists():
-            time.sleep(0.01)
-        """
-    write(tmp_path / "installed", slow=slow)
-    write(tmp_path, first=first, last=last)
-    result = subprocess.run(
-        command("first.py", ":", "last.py"),
-        cwd=tmp_path,
-        env=environment() | {"PYTHONPATH": str(tmp_path / "installed")},
-        capture_output=True,
-        text=True,
-        timeout=LIMIT,
-        check=False,
-    )
-    assert (result.returncode, result.stderr) == (0, "")
-    assert result.stdout.splitlines()[-1] == "whole: True"
-
-
 def test_what_failing_programs_say_is_whole(tmp_path: Path) -> None:
     """The last one to fail ends the others while they print what happened."""
     fails = """
@@ -386,32 +409,6 @@ Traceback (most recent call last):
         assert f"{frames}Failure: {word}\n" in said
         said = said.replace(f"{frames}Failure: {word}\n", "")
     assert said == ""
-
-
-def test_an_interruption_that_comes_where_nothing_can_be_raised_comes_again(tmp_path: Path) -> None:
-    """Python drops exceptions in callbacks of weak references, and prints a message."""
-    waits = """
-        import pathlib, time, weakref
-        def wait_for_ever(_):
-            pathlib.Path("waiting").touch()
-            while True:
-                pass
-        thing = type("Thing", (), {})()
-        reference = weakref.ref(thing, wait_for_ever)
-        try:
-            del thing
-            time.sleep(30)
-        except KeyboardInterrupt:
-            print("interrupted")
-    """
-    last = """
-        import os, time
-        while not os.path.exists("waiting"):
-            time.sleep(0.01)
-    """
-    write(tmp_path, waits=waits, last=last)
-    result = run(tmp_path, "waits.py", ":", "last.py")
-    assert (result.returncode, result.stdout, result.stderr) == (0, "interrupted\n", "")
 
 
 def test_what_a_program_leaves_behind_goes_with_it(tmp_path: Path) -> None:
@@ -446,32 +443,6 @@ def test_what_a_program_leaves_behind_goes_with_it(tmp_path: Path) -> None:
     write(tmp_path, leaves=leaves, last=last)
     result = run(tmp_path, "leaves.py", ":", "last.py")
     assert (result.returncode, result.stdout, result.stderr) == (0, "gone 1\n", "")
-
-
-def test_log_levels_are_each_programs_own(tmp_path: Path) -> None:
-    program = """
-        import os, sys, time, rclpy
-        rclpy.init(args=sys.argv)
-        open(sys.argv[1], "w").close()
-        while not (os.path.exists("one") and os.path.exists("two")):
-            time.sleep(0.01)
-        node = rclpy.create_node("same_name")
-        node.get_logger().debug(f"debug of {sys.argv[1]}")
-        node.get_logger().info(f"info of {sys.argv[1]}", once=True)
-        rclpy.shutdown()
-        open(sys.argv[1] + "_done", "w").close()
-        while not (os.path.exists("one_done") and os.path.exists("two_done")):
-            time.sleep(0.01)
-    """
-    write(tmp_path, program=program)
-    result = run(
-        tmp_path, "program.py", "one", "--ros-args", "--log-level", "debug", ":", "program.py", "two"
-    )
-    assert result.returncode == 0
-    assert "debug of one" in result.stderr
-    assert "debug of two" not in result.stderr
-    assert result.stderr.count("info of") == 2
-    assert "already registered" not in result.stderr
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux tells where a signal comes from")

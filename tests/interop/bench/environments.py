@@ -9,8 +9,12 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ifgen import resources
-from ifgen.diagnostics import Diagnostic, InputError
-from ifgen.interop.peers import Peer
+
+from tests.interop.bench.peers import Peer
+
+
+class CannotInstall(Exception):
+    """Pip cannot install an implementation; the text has its first error."""
 
 
 def python_of(name: str, pythons: Mapping[str, str]) -> str:
@@ -22,15 +26,14 @@ def python_of(name: str, pythons: Mapping[str, str]) -> str:
 
 
 def install(peer: Peer) -> Path:
-    """Make an environment for an implementation, and return its folder. Raises InputError if pip fails."""
+    """Make an environment for an implementation, and return its folder. Raises CannotInstall."""
     folder = _folder(peer.name)
     venv.create(folder, clear=True, with_pip=True)
     words = [str(_python(peer.name)), "-m", "pip", "install", "--quiet", *peer.requirements]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode:
         said = [line for line in done.stderr.splitlines() if line.startswith("ERROR")]
-        message = f"{peer.name} could not be installed: {said[0] if said else done.stderr[-200:]}"
-        raise InputError([Diagnostic("no-peer", message, help=f"try `{' '.join(words)}`")])
+        raise CannotInstall(f"{peer.name} could not be installed: {said[0] if said else done.stderr[-200:]}")
     return folder
 
 

@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Final, NamedTuple
 
-from ifgen.interop import samples
-from ifgen.interop.comparison import difference
-from ifgen.interop.exchange import Actor, Failed
-from ifgen.interop.outcomes import Feature
-from ifgen.interop.samples import Value
+from tests.interop.bench import samples
+from tests.interop.bench.comparison import difference
+from tests.interop.bench.exchange import Actor, Failed
+from tests.interop.bench.outcomes import Feature
+from tests.interop.bench.samples import Value
 
 _MESSAGES: Final = 5
 _LIMIT: Final = 15.0  # [s] for a message to arrive, or an answer

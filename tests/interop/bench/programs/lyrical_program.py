@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
-    from ifgen.interop.programs.conversation import Value, converse, unpacked, zenoh_session
+    from tests.interop.bench.programs.conversation import Value, converse, unpacked, zenoh_session
 else:
     from conversation import Value, converse, unpacked, zenoh_session
 

@@ -1,3 +1,0 @@
-"""A module with the same name as one in programs/."""
-
-WHO = "bystander"
