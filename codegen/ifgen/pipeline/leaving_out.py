@@ -39,8 +39,7 @@ def without_excluded(
     excluded: dict[str, None] = {}
     problems: list[Diagnostic] = []
     for pattern in patterns:
-        matches = [n for n in names if fnmatchcase(n, pattern) and n.count("/") >= min(pattern.count("/"), 1)]
-        matches = matches if "/" in pattern else [name for name in matches if "/" not in name]
+        matches = [n for n in names if ("/" in n) == ("/" in pattern) and fnmatchcase(n, pattern)]
         if not matches:
             message = f"`exclude` has the pattern {pattern!r}, which matches no package, interface or node"
             advice = did_you_mean(pattern, names) or "write a package, or an interface as demo_msgs/msg/Name"
@@ -58,13 +57,15 @@ def resolve_what_can_be(inputs: Inputs) -> tuple[Job, tuple[LeftOut, ...], tuple
     Raises InputError with all mistakes if the run does not keep going, or nothing can be generated.
     """
     leaving = _Leaving(inputs)
-    found: dict[Diagnostic, None] = {}
+    found: list[Diagnostic] = []
     while True:
         try:
             job = resolve(leaving.inputs())
         except InputError as error:
+            if not inputs.keep_going and not inputs.excluded:
+                raise
             wrong = leaving.mistakes(error.diagnostics)
-            found |= dict.fromkeys(one_for_each_cause((*found, *wrong)))
+            found = one_for_each_cause(dict.fromkeys((*found, *wrong)))
             if wrong and not inputs.keep_going:
                 raise InputError(wrong) from None
             before = len(leaving.reasons)

@@ -94,18 +94,19 @@ def locked(directory: Path) -> Generator[None]:
     Remove the leftovers of killed runs.
     """
     with ExitStack() as held:
-        for attempts_left in reversed(range(_ATTEMPTS)):
-            with ExitStack() as attempt:
-                try:
-                    alone = _entered(directory, attempt)
-                except FileNotFoundError:
-                    if not attempts_left:
-                        raise
-                    continue  # another run removed it meanwhile: it made the folder, and nothing came
-                held.push(attempt.pop_all())
-                break
+        alone = _locked_at_last(directory, held)
         _clear(left_over(directory, alone=alone))
         yield
+
+
+def _locked_at_last(directory: Path, held: ExitStack) -> bool:
+    """Make and lock a folder; again if another run, which made it too, removes it because nothing came."""
+    for _ in range(_ATTEMPTS):
+        with ExitStack() as attempt, suppress(FileNotFoundError):
+            alone = _entered(directory, attempt)
+            held.push(attempt.pop_all())
+            return alone
+    return _entered(directory, held)
 
 
 def _entered(directory: Path, held: ExitStack) -> bool:
