@@ -15,8 +15,8 @@ from typing import Final
 from ifgen.definition.explain import did_you_mean
 from ifgen.definition.problems import one_for_each_cause
 from ifgen.diagnostics import Diagnostic, InputError, Span, UsageError
+from ifgen.pipeline import resolution
 from ifgen.pipeline.job import Job
-from ifgen.pipeline.resolution import resolve
 from ifgen.pipeline.values import Inputs, LeftOut
 from ifgen.reading.packages import NODE_FOLDER, PackageFiles
 
@@ -60,7 +60,7 @@ def resolve_what_can_be(inputs: Inputs) -> tuple[Job, tuple[LeftOut, ...], tuple
     found: list[Diagnostic] = []
     while True:
         try:
-            job = resolve(leaving.inputs())
+            job = resolution.resolve(leaving.inputs())
         except InputError as error:
             if not inputs.keep_going and not inputs.excluded:
                 raise

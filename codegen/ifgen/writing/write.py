@@ -27,7 +27,7 @@ EDITED = ".ifgen-edited"
 """The folder in the output folder for edited files that were generated again; git ignores it."""
 
 Kept = TypeVar("Kept")
-"""What a plan keeps of a new content: the bytes, or the path of a file that has them."""
+"""The form in which a plan keeps a new content: the bytes, or the path of a file that has them."""
 
 
 @dataclass(frozen=True, slots=True)
