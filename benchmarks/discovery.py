@@ -1,10 +1,13 @@
 """The price of comparing definitions where endpoints meet on the local transport: none is wanted.
 
-python benchmarks/discovery.py [--against CHECKOUT] [--rounds N]
+python benchmarks/discovery.py [--against CHECKOUT] [--rounds N] [--topics N ...]
 
 Each round is a process of its own; checkouts take turns. CPU time in microseconds of one endpoint (1,000, in
 pairs on 500 topics), of one message and of one request with its response, medians over the rounds. Pairs with
 other definitions are measured here only: `warn` looks for bytes that are left over, `adapt` converts.
+
+Before that, one process has publishers on many topics and another one subscriptions: the CPU time of each,
+and the wall time until all have met. Without rounds, that is all.
 """
 
 from __future__ import annotations
@@ -93,14 +96,66 @@ print(json.dumps(found))
 """
 
 
+MANY = """
+import json, rclpy, sys, time
+from std_msgs.msg import String
+
+role, count = sys.argv[1], int(sys.argv[2])
+rclpy.init()
+node = rclpy.create_node(role)
+begin, cpu = time.monotonic(), time.process_time()
+for number in range(count):
+    if role == "publishers":
+        node.create_publisher(String, f"topic_{number}", 10)
+    else:
+        node.create_subscription(String, f"topic_{number}", lambda _: None, 10)
+while True:
+    if role == "publishers":
+        met = all(each.get_subscription_count() for each in node.publishers if "/topic_" in each.topic_name)
+    else:
+        met = all(each.get_publisher_count() for each in node.subscriptions)
+    if met or time.monotonic() - begin > 150:
+        break
+    time.sleep(0.1)
+wall = time.monotonic() - begin if met else float("inf")
+print(json.dumps({"cpu": time.process_time() - cpu, "wall": wall}), flush=True)
+sys.stdin.read()
+"""
+
+
+def environment_of(checkout: Path) -> dict[str, str]:
+    """The variables of a process with the transport of a checkout."""
+    folders = [checkout / "codegen" / "underlay", checkout / "generated", checkout / "codegen"]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, folders))}
+
+
 def measure(checkout: Path, program: str) -> dict[str, float]:
     """Run a program with the transport of a checkout."""
-    folders = [checkout / "codegen" / "underlay", checkout / "generated", checkout / "codegen"]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, folders))}
-    command = [sys.executable, "-c", program]
+    environment, command = environment_of(checkout), [sys.executable, "-c", program]
     run = subprocess.run(command, env=environment, capture_output=True, text=True, check=True, timeout=120)
     found: dict[str, float] = json.loads(run.stdout)
     return found
+
+
+def meet(checkout: Path, topics: int) -> str:
+    """Let two processes meet on many topics; returns the row of a table."""
+    environment = environment_of(checkout) | {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    sides = [
+        subprocess.Popen(
+            [sys.executable, "-c", MANY, role, str(topics)],
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        for role in ("publishers", "subscriptions")
+    ]
+    found = [json.loads(each.stdout.readline()) for each in sides if each.stdout is not None]
+    for each in sides:
+        each.kill()
+        each.wait()
+    cells = [f"{each['cpu']:.2f}" for each in found]
+    return f"| {topics:,} | {' | '.join(cells)} | {max(each['wall'] for each in found):.1f} |"
 
 
 def medians(rounds: list[dict[str, float]]) -> dict[str, float]:
@@ -113,7 +168,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--against", type=Path, help="another checkout, such as one from before a change")
     parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--topics", type=int, nargs="*", default=[1000, 4000, 10_000])
     options = parser.parse_args()
+    print("| topics | CPU of the publishers [s] | of the subscriptions [s] | all have met after [s] |")
+    print("|---|---|---|---|")
+    for topics in options.topics:
+        print(meet(HERE, topics), flush=True)
+    if not options.rounds:
+        return
+    print()
     here: list[dict[str, float]] = []
     there: list[dict[str, float]] = []
     for _ in range(options.rounds):

@@ -8,6 +8,7 @@ their own, with `--transport local` or, those of libraries, on either.
 
 import os
 import signal
+import sys
 import tempfile
 from contextlib import ExitStack
 from pathlib import Path
@@ -49,6 +50,7 @@ def pytest_configure(config: pytest.Config) -> None:
     if _transport(config) == "local":
         places = (_ROOT / "codegen/underlay", _ROOT / "generated", _ROOT / "codegen", _ROOT)
         os.environ["PYTHONPATH"] = os.pathsep.join(map(str, places))
+        sys.path.append(str(_ROOT))  # which processes of a lockstep run inherit
         os.environ["ROS_LOG_DIR"] = _kept.enter_context(tempfile.TemporaryDirectory(prefix="ifgen-logs-"))
 
 

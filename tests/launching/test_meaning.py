@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
+from ifgen_runtime import parameter_yaml
+from ifgen_tools.launching.errors import LaunchError
 
-from .conftest import Recorded
+from .conftest import LaunchHost, Recorded
 
 HEAD = """
 import os
@@ -248,12 +251,97 @@ def test_values_of_parameters_keep_their_types(record: Recorded, tmp_path: Path)
         )
     finally:
         Recorder.text_file = whole  # type: ignore[method-assign]
-    assert '"a": "y"' in written[0]
+    assert "a: 'y'" in written[0]
     values = yaml.safe_load(written[0])["/**"]["ros__parameters"]
     assert values == {
         **{"a": "y", "b": 0.1, "c": [1.0, 2.5], "d": True, "e": 2, "f": "1"},
-        **{"g.h": ["x", "off"], "i": "pq"},
+        **{"g": {"h": ["x", "off"]}, "i": "pq"},
     }
+
+
+TEXTS = (
+    "1e5",
+    "y",
+    "off",
+    "2026-01-31",
+    "12:30:45",
+    "0x1F",
+    "007",
+    "nan",
+    "null",
+    "~",
+    "1_000",
+    "a",
+    "5",
+    ".inf",
+)
+
+
+@pytest.mark.parametrize("text", TEXTS)
+def test_a_text_is_read_as_nodes_read_it(
+    record: Recorded, monkeypatch: pytest.MonkeyPatch, text: str
+) -> None:
+    """In each kind of launch file; in Python, a text is one unless a substitution makes it."""
+    given: list[Any] = []
+
+    def keep(self: object, parameters: dict[str, Any], node: str) -> str:
+        given.append(parameters["p"])
+        return "file"
+
+    monkeypatch.setattr(LaunchHost, "parameter_file", keep)
+    made = f"LaunchConfiguration('x', default='{text}')"
+    record("a.launch.py", described(f"Node(executable='true', parameters=[{{'p': {made}}}])"))
+    record("a.launch.xml", f"<launch><node exec='true'><param name='p' value='{text}'/></node></launch>")
+    record("a.launch.yaml", f"launch: [node: {{exec: 'true', param: [{{name: p, value: {text}}}]}}]")
+    expected = repr(parameter_yaml.value_of(text))
+    assert list(map(repr, given)) == [expected] * 3
+
+
+def test_a_list_that_is_used_twice(record: Recorded, capsys: pytest.CaptureFixture[str]) -> None:
+    """What no file can hold is left out, and said."""
+    files = "[{'a': g, 'b': g, 'c': []} for g in [[0.1, 2.5]]]"
+    recorder = record("a.launch.py", described(f"Node(executable='true', parameters={files})"))
+    assert "the parameter 'c' is an empty list, which no parameter file can hold" in capsys.readouterr().out
+    assert recorder.exit_code == 0
+
+
+def test_a_file_that_is_no_yaml_after_its_substitutions(
+    record: Recorded, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "p.yaml"
+    file.write_text("/**:\n  ros__parameters:\n    a: $(var x)\n")
+    record(
+        "a.launch.xml",
+        f"<launch><let name='x' value='[1, '/>"
+        f"<node exec='true'><param from='{file}' allow_substs='true'/></node></launch>",
+    )
+    shown = capsys.readouterr().out
+    assert "cannot be read after its substitutions: it is no YAML: " in shown
+    assert "a.launch.xml:1" in shown
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "advice"),
+    [
+        (
+            "a.launch.xml",
+            "<launch><node exec='a'><param name='u' value='x: y: z'/></node></launch>",
+            '`type="str"`',
+        ),
+        ("a.launch.yaml", "launch: [node: {exec: a, param: [{name: u, value: '$(var x)'}]}]", "`type: str`"),
+    ],
+)
+def test_advice_is_for_the_kind_of_file(
+    name: str, text: str, advice: str, record: Recorded, capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        record(name, text, x="x: y: z")
+    except LaunchError as error:
+        shown = error.message
+    else:
+        shown = capsys.readouterr().out
+    assert f"{advice} in the `param` passes a text as it is" in shown
+    assert "ParameterValue" not in shown
 
 
 def test_the_environment_is_as_before(record: Recorded) -> None:

@@ -6,8 +6,11 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
+import click
 import pytest
+from ifgen_tools.launching import commands
 from ifgen_tools.launching.errors import LaunchError
 from ifgen_tools.launching.reading import read
 from launch import LaunchContext, LaunchDescriptionEntity
@@ -136,11 +139,11 @@ LINES = [
     ),
     (
         "Node(executable='true', parameters=[{'a': LaunchConfiguration('x', default='[1')}])",
-        "the parameter 'a': the text '[1' is not YAML: ParameterValue(..., value_type=str) passes it as it is",
+        "the parameter 'a': the text '[1' is no value of a parameter: it is no YAML: ",
     ),
     (
         "Node(executable='true', parameters=[{'a': ParameterValue('1', value_type=list[int])}])",
-        "the parameter 'a': expected a list, got '1'",
+        "the parameter 'a': the text '1' is no value of a parameter: this is not a list of values",
     ),
     (
         "Node(executable='true', parameters=[ParameterFile('/no/such.yaml', allow_substs=True)])",
@@ -198,6 +201,35 @@ def test_outside_of_a_launch() -> None:
         _ = Node(executable="a").node_name
 
 
+@pytest.mark.parametrize("words", [["f.launch.py", "rate=0.1"], ["p", "f.launch.py", "rate=0.1", "a:=b"]])
+def test_an_argument_without_a_colon(words: list[str]) -> None:
+    with pytest.raises(click.UsageError, match=r"'rate=0\.1' sets no argument: write rate:=0\.1"):
+        commands._split(words)
+
+
+@pytest.mark.parametrize(
+    ("name", "remark"),
+    [
+        ("rte", "has no argument 'rte': did you mean 'rate'?"),
+        ("zzz", "has no argument 'zzz': it has rate"),
+        ("rate", ""),
+        ("late", ""),
+        ("transport", ""),
+    ],
+)
+def test_an_argument_that_nobody_declares(name: str, remark: str, record: Recorded, tmp_path: Path) -> None:
+    """One that the file mentions may be read by its functions."""
+    recorder = record(
+        "a.launch.py",
+        described(
+            "DeclareLaunchArgument('rate', default_value='1'), say(LaunchConfiguration('late', default=''))"
+        ),
+    )
+    path = str(tmp_path / "a.launch.py")
+    found = commands._unknown(name, recorder.read(path), path, recorder)
+    assert found == (f"{path} {remark}" if remark else "")
+
+
 @pytest.mark.parametrize(
     ("words", "code", "message"),
     [
@@ -222,3 +254,30 @@ def test_command_line(words: list[str], code: int, message: str, tmp_path: Path)
     assert (done.returncode, done.stdout) == (code, "")
     assert done.stderr.startswith("error: ")
     assert message in done.stderr
+
+
+KINDS_OF_VALUES = (
+    *("text", "5", "1e400", "9" * 5000, ".nan", "null", "2026-01-31", "12:30:45", "{}", "a: b", "{a: b}", "[]", "[1, a]"),
+    *("[[1]]", "[{}]", "[null]", "[1", '"', '"a\\0b"', '"\\ud800"', "[" * 200, "*a", "&a [*a]", "!!binary AQ==", "%", "@"),
+    *("!!set {a}", "!!python/object:os.system x", "!!int x", "- a\n- b", "'é'", "<<", "=", "? [a]\n: b"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("value", KINDS_OF_VALUES, ids=[ascii(value)[:20] for value in KINDS_OF_VALUES])
+def test_every_kind_of_value(value: str, record: Recorded, capsys: pytest.CaptureFixture[str]) -> None:
+    """A parameter takes it, or one line says why not, in each kind of launch file."""
+    made = f"Node(executable='true', parameters=[{{'p': LaunchConfiguration('x', default={value!r})}}])"
+    files = {
+        "a.launch.py": described(made),
+        "a.launch.xml": f"<launch><node exec='true'><param name='p' value={quoteattr(value)}/></node></launch>",
+        "a.launch.yaml": f"launch: [node: {{exec: 'true', param: [{{name: p, value: {value}}}]}}]",
+    }
+    for name, text in files.items():
+        try:
+            recorder = record(name, text)
+        except LaunchError as error:
+            said = [error.message]
+        else:
+            said = [line for line in capsys.readouterr().out.splitlines() if line.startswith("[ERROR]")]
+            assert len(said) == recorder.exit_code, (name, said)
+        assert all("Error: " not in line and len(line) < 600 for line in said), (name, said)

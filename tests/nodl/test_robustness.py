@@ -178,7 +178,7 @@ BOMBS = {
     "many endpoints": "nodl_version: 2\npublishers:\n" + f"  - {ENDPOINT}\n" * 3_000,
     "quotes": "nodl_version: 2\ndescription: '" + "'' " * 60_000,
     "anchors": "nodl_version: 2\ncodegen: {x: [" + "".join(f"&a{i} 1, " for i in range(20_000)) + "*b]}\n",
-    "sexagesimal": "nodl_version: 2\ndescription: " + "1:" * 140_000 + "1\n",
+    "sexagesimal": "nodl_version: 2\nparameters: {a: {type: int, default_value: " + "1:" * 140_000 + "1}}\n",
     "no spaces": "nodl_version: 2\npublishers: [{name: " + "a/" * 60_000 + "}]\n",
 }
 

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
+import struct
 import subprocess
+import sys
+import threading
+import time
 from pathlib import Path
 
 import pytest
@@ -12,9 +17,12 @@ import pytest
 from tests.running.sites import Site
 from tests.running.terminals import Terminal
 
-pytest.importorskip("zenoh")
+zenoh = pytest.importorskip("zenoh")
 
 PAGE = Path(__file__).parents[2] / "docs/processes.md"
+CAMERA, NOTICES, KEEPER = (
+    str(Path(__file__).parent / "peers" / name) for name in ("camera.py", "notices.py", "keeping.py")
+)
 
 
 @pytest.fixture(scope="module")
@@ -86,6 +94,75 @@ def test_access_control_keeps_a_topic_from_who_has_a_certificate(
     assert not any(line.startswith("heard") for line in peers["command"].so_far())
     peer("near_command", "talk", "cmd_vel", near)
     peers["command"].until("heard")
+
+
+@pytest.mark.slow
+def test_notices_of_shared_memory_do_not_pass_by_access_control(
+    site: Site, endpoints: list[str], authorities: dict[str, Path]
+) -> None:
+    near, far = endpoints[0], endpoints[1].replace("tcp", "tls")
+    ours = authorities["ours"]
+    (rules,) = _blocks("Access control", "json5")
+    site.router("--config", _router_file(site.folder, near, far, ours, rules))
+    remapping = ("--ros-args", "-r", "count:=cmd_vel")
+    robot = site.peer("robot", "listen", near, *remapping)
+    watcher = site.program(CAMERA, "watch", "0", "10", at=near)
+    site.program(CAMERA, "show", "400000", "0.05", "100000", "1", at=near)
+    watcher.until("number")
+    robot.until("nodes camera robot watcher")
+    settings = json.dumps(_settings(ours, far))
+    words = (site.environment["ROS_DOMAIN_ID"], settings, "robot", "camera")
+    laptop = subprocess.Popen(
+        [sys.executable, NOTICES, *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    with laptop:
+        assert laptop.stdout is not None
+        assert laptop.stdout.readline() == "sent\n"
+        site.peer("command", "talk", near, *remapping)
+        robot.until("heard")
+        laptop.kill()
+    assert "heard 0" not in robot.so_far()
+    watcher.until("number")
+
+
+@pytest.mark.slow
+def test_answers_about_earlier_messages_do_not_pass_by_access_control(
+    site: Site, endpoints: list[str], authorities: dict[str, Path]
+) -> None:
+    """A transient local subscription asks everybody for them."""
+    near, far = endpoints[0], endpoints[1].replace("tcp", "tls")
+    ours = authorities["ours"]
+    (rules,) = _blocks("Access control", "json5")
+    site.router("--config", _router_file(site.folder, near, far, ours, rules))
+    config = zenoh.Config()
+    for path, value in _settings(ours, far).items():
+        config.insert_json5(path, json.dumps(value))
+    was_asked = threading.Event()
+
+    def answer(query: zenoh.Query) -> None:
+        key, _, rest = str(query.key_expr).partition("/@adv")
+        if rest and "/cmd_vel/" in key:
+            text = b"laptop:1\0"
+            data = b"\0\1\0\0" + len(text).to_bytes(4, "little") + text
+            attachment = struct.pack("<qqB16s", 1, time.time_ns(), 16, bytes(16))
+            query.reply(key, data, attachment=attachment, timestamp=laptop.new_timestamp())
+            was_asked.set()
+
+    with zenoh.open(config) as laptop:
+        laptop.declare_queryable("*/cmd_vel/*/*/@adv/**", zenoh.handlers.Callback(answer, indirect=False))
+        remapping = ("--ros-args", "-r", "state:=cmd_vel")
+        robot = site.program(KEEPER, "robot", *remapping, at=near)
+        assert was_asked.wait(30)
+        site.program(KEEPER, "command", *remapping, at=near)
+        robot.until("state command")
+        assert not any(line.startswith("state laptop") for line in robot.so_far())
+
+
+def _settings(authority: Path, router: str) -> dict[str, object]:
+    """Those of a session of Zenoh with the laptop's certificate, which is not ours."""
+    override = dict(pair.split("=") for pair in _override(authority, authority).split(";") if "=" in pair)
+    settings: dict[str, object] = {path.strip(): json.loads(value) for path, value in override.items()}
+    return settings | {"mode": "client", "connect/endpoints": [router]}
 
 
 def _router_file(folder: Path, near: str, far: str, authority: Path, more: str = "{}") -> str:

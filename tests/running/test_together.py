@@ -475,6 +475,10 @@ def test_ctrl_c_of_a_terminal_is_not_passed_on() -> None:
     ("words", "told"),
     [
         (["-h"], "Usage: ifgen run"),
+        (
+            ["last.py", "--ros-args", "-p", "rate=2.0"],
+            "error[no-program]: `-p rate=2.0` sets no parameter\n  = help: write `-p rate:=2.0`",
+        ),
         (["-m", "nope"], "error[no-program]: there is no module 'nope'"),
         (["-m", "os.nope"], "error[no-program]: there is no module 'os.nope'"),
         (["-m", "email"], "error[no-program]: the package 'email' cannot be run"),

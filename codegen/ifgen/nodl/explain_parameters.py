@@ -58,6 +58,17 @@ def unknown_type(text: str, span: Span) -> Diagnostic:
     return Diagnostic("invalid-parameter-type", message, Label(span), help=hint)
 
 
+def nested_group(group: Key, inner: Key) -> Diagnostic:
+    """Say that parameters are not grouped by maps."""
+    name = f"{shorten(group.name)}.{shorten(inner.name)}"
+    return Diagnostic(
+        "unknown-key",
+        f"parameters are not grouped by maps: a parameter has no key `{shorten(inner.name)}`",
+        Label(inner.span, "unknown key"),
+        help=f"write the whole name: `{name}: {{type: ...}}`",
+    )
+
+
 def reserved(name: str, span: Span) -> Diagnostic:
     """Say that rclpy declares a parameter itself."""
     return Diagnostic(

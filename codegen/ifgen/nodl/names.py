@@ -13,6 +13,9 @@ _IDENTIFIER: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 ENDPOINT: Final = r"^(~?/[A-Za-z_]|[A-Za-z])[A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$"
 """Whole names of topics, services and actions, as `endpoint_name_problem` has them."""
 
+_OF_CLASSES: Final = frozenset(name for name in dir(type) if not name.startswith("__"))
+"""Attributes of every class, which a dataclass would take for the default values of its fields."""
+
 PARAMETER: Final = r"^[A-Za-z_][A-Za-z0-9_]*(\.[A-Za-z_][A-Za-z0-9_]*)*$"
 """The characters of a parameter's name. Some such names cannot be attributes all the same."""
 
@@ -138,8 +141,11 @@ def parameter_name_problem(name: str) -> BadName | None:
                 f"{hint}Each part of the name becomes an attribute in Python: letters, digits, underscores"
             )
             return BadName(f"`{part}` is not a valid part of a parameter's name", start, end, advice)
-        if keyword.iskeyword(part) or (part.startswith("__") and part.endswith("__")):
+        if keyword.iskeyword(part) or part in _OF_CLASSES or (part.startswith("__") and part.endswith("__")):
             return BadName(f"`{part}` cannot be an attribute in Python", start, end, "choose another word")
+        if part.startswith("__"):
+            reason = f"`{part}` is private in Python, which gives it another name in each class"
+            return BadName(reason, start, end, f"write `{part.lstrip('_') or 'private'}`, or one `_`")
         start = end + 1
     return None
 

@@ -36,6 +36,9 @@ def _parameter(key: Key, node: Node, problems: FileProblems) -> Parameter | None
         problems.error(invalid_name, key.name, key.span, problem)
     elif names.reserved_parameter(key.name):
         problems.error(explain.reserved, key.name, key.span)
+    if inner := _first_inside(node):
+        problems.error(explain.nested_group, key, inner)
+        return None
     fields = shape.table(node, "a parameter", KEYS, ("type",), problems)
     if fields is None:
         return None
@@ -48,6 +51,14 @@ def _parameter(key: Key, node: Node, problems: FileProblems) -> Parameter | None
     checks = _validators(fields, type_, problems)
     default = _default(fields, type_, checks, problems)
     return Parameter(key.name, type_, default, description, read_only, constraints, checks, key.span)
+
+
+def _first_inside(node: Node) -> Key | None:
+    """The first parameter in what is no parameter, but a group of them; None if it is no group."""
+    if not isinstance(node, MapNode) or node.get("type") is not None:
+        return None
+    inside = (key for key, value in node.entries if isinstance(value, MapNode) and key.name not in KEYS)
+    return next(inside, None)
 
 
 def _type(fields: MapNode, problems: FileProblems) -> ParameterType | None:

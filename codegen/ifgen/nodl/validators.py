@@ -200,8 +200,9 @@ def _scalars(nodes: Sequence[Node], base: str) -> tuple[ScalarValue, ...] | BadV
 
 def _whole(node: Node) -> Node:
     """An integer for a number without a fraction, which for people is one: 5.0."""
-    if isinstance(node, ScalarNode) and isinstance(node.value, float) and node.value.is_integer():
-        return ScalarNode(int(node.value), node.span, node.plain)
+    read = values.read(node)
+    if isinstance(read, ScalarNode) and isinstance(read.value, float) and read.value.is_integer():
+        return ScalarNode(int(read.value), read.span, read.plain)
     return node
 
 

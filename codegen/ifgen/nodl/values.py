@@ -7,6 +7,7 @@ import re
 from typing import Final, Literal, NamedTuple, cast
 
 from ifgen.nodl.model import ParameterType, ParameterValue, ScalarValue
+from ifgen.nodl.syntax.parameter_scalars import read_scalar
 from ifgen.nodl.syntax.tree import ListNode, Node, ScalarNode
 
 SCALARS: Final = ("bool", "int", "double", "string", "none")
@@ -74,8 +75,24 @@ def value(node: Node, type_: ParameterType) -> ParameterValue | BadValue:
     return bytes(cast("list[int]", elements)) if type_.base == "byte" else tuple(elements)
 
 
+def read(node: Node) -> Node:
+    """A value of a parameter as a node reads it in a parameter file: `1e5` is a number, `y` is true."""
+    if not isinstance(node, ScalarNode) or node.written is None or node.value is None:
+        return node
+    return ScalarNode(read_scalar(node.written), node.span, node.plain)
+
+
 def scalar(node: Node, base: str) -> ScalarValue | BadValue:
-    """The value that a node says for a parameter or an element of the type `base`."""
+    """The value that a node says for a parameter or an element of the type `base`.
+
+    It is that of a parameter file if this has the type, else that of YAML 1.1: `y` is a text where one
+    belongs.
+    """
+    found = _of_base(read(node), base)
+    return _of_base(node, base) if isinstance(found, BadValue) else found
+
+
+def _of_base(node: Node, base: str) -> ScalarValue | BadValue:
     found = node.value if isinstance(node, ScalarNode) else None
     match base, found:
         case "bool", bool():

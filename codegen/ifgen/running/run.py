@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Generator, Sequence
 from difflib import get_close_matches
+from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
@@ -35,7 +36,21 @@ def split(words: Sequence[str], generated: Path | None = None) -> list[list[str]
             programs.append([])
         else:
             programs[-1].append(word)
+    for program in programs:
+        _check_parameters(program)
     return [_without_package(program, generated or settle().output) for program in programs]
+
+
+def _check_parameters(program: Sequence[str]) -> None:
+    """Raise UsageError for `-p rate=2.0`, of which rcl only says that it expected another lexeme."""
+    words = list(program[program.index("--ros-args") :]) if "--ros-args" in program else []
+    for option, word in pairwise(words):
+        if option == "--":
+            return
+        name, equals, value = word.partition("=")
+        if option in ("-p", "--param") and ":=" not in word and equals and name:
+            message = f"`{option} {word}` sets no parameter"
+            raise UsageError([Diagnostic("no-program", message, help=f"write `{option} {name}:={value}`")])
 
 
 def _without_package(program: list[str], generated: Path) -> list[str]:

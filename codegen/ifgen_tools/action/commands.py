@@ -76,7 +76,7 @@ def info(**chosen: Any) -> None:
 @click.option("-f", "--feedback", is_flag=True, help="Print feedback as well.")
 @options.transport_option
 @options.json_option
-def send_goal(**chosen: Any) -> None:
+def send_goal(**chosen: Any) -> int:
     """Send a goal to an action, and print the result. Ctrl-C cancels the goal.
 
     GOAL is YAML. Fields that are not in it keep their default values; `auto` for a header and `now` for a
@@ -84,4 +84,4 @@ def send_goal(**chosen: Any) -> None:
     """
     from ifgen_tools.action.goal import send_goal
 
-    send_goal(**chosen)
+    return send_goal(**chosen)

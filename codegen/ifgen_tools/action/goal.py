@@ -40,8 +40,11 @@ def send_goal(
     feedback: bool = False,
     transport: TransportChoice = "auto",
     as_json: bool = False,
-) -> None:
-    """Send a goal, and print what becomes of it. Ctrl-C cancels it, and waits until it has ended."""
+) -> int:
+    """Send a goal, and print what becomes of it. Returns 1 if the server rejects it.
+
+    Ctrl-C cancels it, and waits until it has ended.
+    """
     type_name = full_type_name(type_name, "action")
     given = read_yaml(values_or_stdin(values, from_stdin), "the values of the goal")
     with open_session(transport) as session:
@@ -59,11 +62,12 @@ def send_goal(
         with noted() as interruption:
             sending = _Sending(session, name, cls, output, interruption)
             try:
-                sending.run(goal, feedback)
+                is_accepted = sending.run(goal, feedback)
             finally:
                 sending.end()
         if interruption:
             raise interruption.stop()
+    return 0 if is_accepted else 1
 
 
 class _Sending:
@@ -80,19 +84,19 @@ class _Sending:
         self._interruption = interruption
         self._client = ActionClient(session.node, cls, name)
 
-    def run(self, goal: Any, feedback: bool) -> None:
-        """Send the goal, and stay until it has ended."""
+    def run(self, goal: Any, feedback: bool) -> bool:
+        """Send the goal, and stay until it has ended. Returns False if the server rejects it."""
         ready, output = self._client.server_is_ready, self._output
         self._session.wait_for(lambda: ready() or bool(self._interruption))
         if self._interruption:
-            return
+            return False
         output.sending(goal)
         listener = (lambda message: output.feedback(message.feedback)) if feedback else None
         sent = self._client.send_goal_async(goal, feedback_callback=listener)
         handle = answer(self._session, sent, ready, self._what)
         if not handle.accepted:
             output.rejected()
-            return
+            return False
         output.accepted(bytes(handle.goal_id.uuid).hex())
         result = handle.get_result_async()
         ended = answer(self._session, result, ready, self._what, lambda: bool(self._interruption))
@@ -100,6 +104,7 @@ class _Sending:
             self._cancel(handle)
             ended = answer(self._session, result, ready, self._what)
         output.result(ended.result, _STATES.get(ended.status, "UNKNOWN"))
+        return True
 
     def _cancel(self, handle: Any) -> None:
         """Ask the server to cancel the goal. Raises ToolError if it refuses."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import re
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,10 +13,12 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from ifgen_tools import completion
-from ifgen_tools.errors import ToolError
+from ifgen_tools.errors import ToolError, did_you_mean
 from ifgen_tools.options import transport_option
 
 if TYPE_CHECKING:
+    from launch import LaunchDescription
+
     from ifgen_tools.launching.running.host import LaunchHost
 
 # Late imports: what a launch needs, and `launch` itself, which is found once the transport is chosen.
@@ -26,6 +29,8 @@ _TRANSPORTS: dict[str, Literal["local", "rclpy", "auto"]] = {
     "transport:=auto": "auto",
 }
 """Arguments that choose the transport, for launch files that declare one of this name."""
+
+_ASSIGNMENT = re.compile(r"(\w+)=(.*)", re.DOTALL)
 
 _LIBRARIES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
 
@@ -104,18 +109,36 @@ def launch(
     include = IncludeLaunchDescription(path, launch_arguments=[(name, value) for name, value in arguments])
     include.place = None
     try:
-        include.launch_description_source.get_launch_description(context)
+        description = include.launch_description_source.get_launch_description(context)
     except LaunchError:
         raise
     except Exception as error:
         raise explained(error) from error
+    for name, _ in arguments:
+        if remark := _unknown(name, description, path, host):
+            print(f"warning: {remark}", file=sys.stderr, flush=True)
     return host.run(include)
+
+
+def _unknown(name: str, description: LaunchDescription, path: str, host: LaunchHost) -> str:
+    """A remark about an argument that no file declares, and that this one does not mention; else empty."""
+    from ifgen_tools.launching.describing import arguments
+
+    known = [argument.name for argument in arguments(description, path, host)]
+    text = Path(path).read_text(encoding="utf-8", errors="replace")
+    if name in {*known, "transport"} or re.search(rf"\b{re.escape(name)}\b", text):
+        return ""
+    advice = did_you_mean(name, known) or (f"it has {', '.join(known)}" if known else "it has none")
+    return f"{path} has no argument '{name}': {advice}"
 
 
 def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
     """The file, after its package if there is one, and the arguments for it."""
     given = [word for word in words if ":=" in word]
     paths = [word for word in words if ":=" not in word]
+    for word in paths[1:]:
+        if found := _ASSIGNMENT.fullmatch(word):
+            raise click.UsageError(f"'{word}' sets no argument: write {found[1]}:={found[2]}")
     if len(paths) > 2 or not paths:
         wrong = paths[2] if paths else words[0]
         raise click.UsageError(f"unexpected '{wrong}': arguments are NAME:=VALUE, and FILE comes first")

@@ -16,6 +16,16 @@ Place = tuple[str, int]
 _OURS = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ifgen_tools")
 
 
+_AS_TEXT = {
+    ".py": "ParameterValue(..., value_type=str) passes",
+    ".xml": '`type="str"` in the `param` passes',
+    ".launch": '`type="str"` in the `param` passes',
+    ".yaml": "`type: str` in the `param` passes",
+    ".yml": "`type: str` in the `param` passes",
+}
+"""What passes a text as it is, as launch_ros says it of Python, by the kind of launch file."""
+
+
 class LaunchError(ToolError):
     """A mistake in a launch file; `place` is None where no file can be blamed."""
 
@@ -47,7 +57,15 @@ def explained(error: Exception, place: Place | None = None) -> LaunchError:
     if isinstance(error, ImportError | AttributeError) and (refused := _refused(error)):
         return LaunchError(refused[0], own or place, refused[1])
     known = isinstance(error, RuntimeError | TypeError | ValueError | ImportError | NotImplementedError)
-    return LaunchError(text if known else f"{type(error).__name__}: {text}", own or place)
+    place = own or place
+    return LaunchError(_advised(text, place) if known else f"{type(error).__name__}: {text}", place)
+
+
+def _advised(text: str, place: Place | None) -> str:
+    """A text whose advice is for a launch file in Python, with that for the kind of file that it is about."""
+    suffix = Path(place[0]).suffix if place else ".py"
+    advice = _AS_TEXT.get(suffix)
+    return text if advice is None else text.replace(_AS_TEXT[".py"], advice)
 
 
 def _refused(error: ImportError | AttributeError) -> tuple[str, str] | None:

@@ -72,8 +72,9 @@ def _asked(node: str, available: Sequence[Transition], wanted: str) -> Transitio
     for each in available:
         if str(each.id) == wanted:
             return each
+    short = wanted if len(wanted) <= 60 else f"{wanted[:57]}..."
     known = ", ".join(f"{each.label} [{each.id}]" for each in available)
-    raise ToolError(f"{node!r} has no transition {wanted!r} now", f"available ones are: {known or 'none'}")
+    raise ToolError(f"{node!r} has no transition '{short}' now", f"available ones are: {known or 'none'}")
 
 
 def _plain(description: TransitionDescription) -> dict[str, object]:

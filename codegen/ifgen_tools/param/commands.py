@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import wraps
 from typing import Any, Final
 
 import click
@@ -51,6 +52,22 @@ def _node_options(command: Command) -> Command:
     return command
 
 
+def _timeout_option(command: Command) -> Command:
+    """`--timeout SECONDS` of ROS, which is `spin_time` where that is not given."""
+
+    @wraps(command)
+    def run(timeout: float | None, spin_time: float | None, **chosen: Any) -> int:
+        code: int = command(spin_time=timeout if spin_time is None else spin_time, **chosen)
+        return code
+
+    return click.option(
+        "--timeout",
+        type=click.FloatRange(min=0),
+        metavar="SECONDS",
+        help="How long to wait for the node. The default is 5 s, less if it cannot be there.",
+    )(run)
+
+
 def _patience_option(command: Command) -> Command:
     return click.option(
         "--service-timeout",
@@ -83,6 +100,7 @@ def list_(**chosen: Any) -> int:
 @_node_options
 @click.option("--hide-type", is_flag=True, help="Only the value.")
 @_patience_option
+@_timeout_option
 def get(**chosen: Any) -> int:
     """Print the value of a parameter."""
     from ifgen_tools.param.values import get_parameter
@@ -106,6 +124,7 @@ def get(**chosen: Any) -> int:
 @_node_options
 @click.option("--atomic", is_flag=True, help="All of them or none.")
 @_patience_option
+@_timeout_option
 def set_(pairs: tuple[str, ...], **chosen: Any) -> int:
     """Set parameters of a node. Values are YAML: 0.5, true, text, [1, 2]."""
     from ifgen_tools.param.values import set_parameters
@@ -124,6 +143,7 @@ def set_(pairs: tuple[str, ...], **chosen: Any) -> int:
 @click.argument("name", shell_complete=completion.parameters)
 @_node_options
 @_patience_option
+@_timeout_option
 def delete(**chosen: Any) -> int:
     """Delete a parameter that the node allows to be deleted."""
     from ifgen_tools.param.values import delete_parameter
@@ -136,6 +156,7 @@ def delete(**chosen: Any) -> int:
 @click.argument("names", nargs=-1, required=True, metavar="NAME...", shell_complete=completion.parameters)
 @_node_options
 @_patience_option
+@_timeout_option
 def describe(**chosen: Any) -> int:
     """Print the types, descriptions and limits of parameters."""
     from ifgen_tools.param.describing import describe_parameters
@@ -147,6 +168,7 @@ def describe(**chosen: Any) -> int:
 @click.argument("node", shell_complete=completion.nodes)
 @_node_options
 @_patience_option
+@_timeout_option
 def dump(**chosen: Any) -> int:
     """Print all parameters of a node as a YAML file, for `ifgen param load` and --params-file."""
     from ifgen_tools.param.files import dump_parameters
@@ -160,6 +182,7 @@ def dump(**chosen: Any) -> int:
 @_node_options
 @click.option("--no-use-wildcard", is_flag=True, help="Leave out the parameters of `/**` in the file.")
 @_patience_option
+@_timeout_option
 def load(**chosen: Any) -> int:
     """Set the parameters of a node from a YAML file."""
     from ifgen_tools.param.files import load_parameters

@@ -86,6 +86,11 @@ class RemoteParameters:
         response = self._answer(self._client.describe_parameters(list(names)), "describe_parameters")
         return list(response.descriptors)
 
+    def known_descriptors(self, names: Sequence[str]) -> dict[str, ParameterDescriptor]:
+        """The descriptors of those parameters that are declared, by name."""
+        known = set(self.names())
+        return {each.name: each for each in self.descriptors([name for name in names if name in known])}
+
     def types(self, names: Sequence[str]) -> dict[str, int]:
         """The declared types of parameters, of those without a value, too; empty if one is not declared."""
         return {descriptor.name: descriptor.type for descriptor in self.descriptors(names)}

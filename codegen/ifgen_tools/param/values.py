@@ -9,13 +9,17 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
 
+from ifgen_runtime import parameter_yaml
+from ifgen_runtime.parameter_scalars import Value
+
 from ifgen_tools.errors import ToolError
 from ifgen_tools.nodes import find_node
 from ifgen_tools.param.remote import TYPES, RemoteParameters, SetResult
 from ifgen_tools.session import TransportChoice, open_session
+from ifgen_tools.texts.filling import shown, text_problem
 
 if TYPE_CHECKING:
-    from rcl_interfaces.msg import ParameterValue
+    from rcl_interfaces.msg import Parameter, ParameterValue
 
 # Late imports: rclpy is found once the transport has been chosen.
 
@@ -32,14 +36,20 @@ _FIELDS: Final = {
 }
 
 
-def value_of(message: ParameterValue) -> Any:
-    """The value in a rcl_interfaces/msg/ParameterValue; None if it is not set. Bytes are a list of int."""
+def value_of(message: ParameterValue) -> Value | bytes:
+    """The value in a rcl_interfaces/msg/ParameterValue; None if it is not set."""
     if message.type not in _FIELDS:
         return None
-    value = getattr(message, _FIELDS[message.type])
-    if message.type == 5:
-        return [each[0] for each in value]
-    return list(value) if message.type > 5 else value
+    value: Any = getattr(message, _FIELDS[message.type])
+    if message.type == _BYTES:
+        return b"".join(value)
+    return list(value) if message.type > _BYTES else value
+
+
+def json_value(message: ParameterValue) -> Any:
+    """The value as JSON has it: bytes are a list of int."""
+    value = value_of(message)
+    return list(value) if isinstance(value, bytes) else value
 
 
 def get_parameter(
@@ -62,7 +72,7 @@ def get_parameter(
             raise remote.missing(name)
     message = found[name]
     if as_json:
-        parts = {"node": remote.node, "name": name, "type": TYPES[message.type], "value": value_of(message)}
+        parts = {"node": remote.node, "name": name, "type": TYPES[message.type], "value": json_value(message)}
         print(json.dumps(parts))
     elif message.type not in _FIELDS:
         print("None" if hide_type else "Parameter not set.")
@@ -84,11 +94,14 @@ def set_parameters(
     use_sim_time: bool = False,
 ) -> int:
     """Set parameters to values, which are YAML. Returns 1 if the node has refused one."""
+    values = [(name, _read(name, text)) for name, text in pairs]
     with open_session(transport, use_sim_time=use_sim_time) as session:
-        from rcl_interfaces.msg import Parameter
-
         remote = RemoteParameters(session, find_node(session, node, spin_time), patience)
-        parameters = [Parameter(name=name, value=_parsed(name, text)) for name, text in pairs]
+        # Only these depend on the declared type.
+        unclear = [name for name, value in values if value is None or isinstance(value, list)]
+        found = remote.known_descriptors(unclear) if unclear else {}
+        types = {name: descriptor.type for name, descriptor in found.items()}
+        parameters = [parameter_of(name, value, types.get(name, 0)) for name, value in values]
         results = remote.set_atomically(parameters) if atomic else remote.set(parameters)
         advice = [] if all(each.successful for each in results) else _advice(remote, parameters, results)
     if atomic and not as_json:
@@ -152,25 +165,51 @@ def _text(message: ParameterValue) -> str:
     return str(value if isinstance(value, array) else list(value) if message.type > 4 else value)
 
 
-def _parsed(name: str, text: str) -> ParameterValue:
-    import yaml
-    from rclpy.parameter import get_parameter_value
-
+def _read(name: str, text: str) -> Value:
+    """The value that a text stands for, as `-p name:=text` has it; an empty one is an empty text."""
     try:
-        value = get_parameter_value(text)
-    except (yaml.YAMLError, RecursionError) as error:
-        raise ToolError(f"the value of {name!r} is no YAML: {' '.join(str(error).split())}") from None
-    except (AssertionError, OverflowError, TypeError, ValueError) as error:
-        raise ToolError(f"the value {text!r} of {name!r} fits no parameter: {error}") from None
-    check_integers(name, value)
-    return value
+        return parameter_yaml.value_of(text) if text else ""
+    except parameter_yaml.ParameterYamlError as error:
+        raise ToolError(
+            f"the value {shown(text)} of {name!r} fits no parameter: {error.reason}", _QUOTES
+        ) from None
 
 
-def check_integers(name: str, message: ParameterValue) -> None:
-    """Raise ToolError for integers that no parameter can hold."""
-    for number in (message.integer_value, *message.integer_array_value):
-        if not -(2**63) <= number < 2**63:
-            raise ToolError(f"the value {number} of {name!r} fits no parameter", "integers have 64 bits")
+_QUOTES: Final = "put a text in quotes of YAML within those of the shell, such as '\"a: b\"'"
+
+
+def parameter_of(name: str, value: Value, declared: int) -> Parameter:
+    """The message of a parameter that has a value as rcl reads it; None is an empty list.
+
+    The type that the node has declared, or 0, says what an empty list and a list of bytes are. Raises
+    ToolError.
+    """
+    from rcl_interfaces.msg import Parameter, ParameterValue
+
+    type_ = declared if value is None and declared in _ELEMENTS else _TYPES_OF.get(type(value), 0)
+    converted: Any = [] if value is None else value
+    if isinstance(value, list):
+        type_ = next(array for array, kind in _ELEMENTS.items() if isinstance(value[0], kind))
+        if declared == _BYTES and type_ == _INTEGERS:
+            if wrong := [each for each in value if each not in range(256)]:
+                raise ToolError(f"the value {wrong[0]} in {name!r} fits no byte", "bytes are 0 to 255")
+            type_, converted = _BYTES, [bytes([each]) for each in value]
+    if problem := text_problem(name):
+        raise ToolError(f"{name!r} can be no name of a parameter: {problem}")
+    for text in converted if isinstance(converted, list) else [converted]:
+        if isinstance(text, str) and (problem := text_problem(text)):
+            raise ToolError(f"the value of {name!r} fits no parameter: {problem}")
+    message = ParameterValue(type=type_ or _EMPTY)
+    setattr(message, _FIELDS[message.type], converted)
+    return Parameter(name=name, value=message)
+
+
+_BYTES: Final = 5
+_EMPTY: Final = 6  # what rclpy makes of an empty list
+_INTEGERS: Final = 7
+_TYPES_OF: Final[dict[type, int]] = {bool: 1, int: 2, float: 3, str: 4}
+_ELEMENTS: Final[dict[int, type]] = {6: bool, 7: int, 8: float, 9: str, 5: bytes}
+"""The types of elements of arrays; a bool is an int, so it comes first."""
 
 
 def _advice(remote: RemoteParameters, parameters: Sequence[Any], results: Sequence[SetResult]) -> list[str]:
@@ -185,17 +224,18 @@ def _advice(remote: RemoteParameters, parameters: Sequence[Any], results: Sequen
             continue
         type_ = remote.types([parameter.name]).get(parameter.name, 0)
         if type_ not in {0, parameter.value.type}:
-            example = _EXAMPLES[type_]
-            lines.append(f"{parameter.name!r} has the type {TYPES[type_]}: write a value such as {example}")
+            lines.append(
+                f"{parameter.name!r} has the type {TYPES[type_]}: write a value such as {_EXAMPLES[type_]}"
+            )
     return lines
 
 
 _EXAMPLES: Final = {
     1: "true",
-    2: "1",
+    2: "1, of 64 bits",
     3: "1.0",
     4: "\"'1'\"",
-    5: "one in a file, since no text stands for bytes",
+    5: "'[1, 255]'",
     6: "'[true, false]'",
     7: "'[1, 2]'",
     8: "'[1.0, 2.0]'",

@@ -1,4 +1,7 @@
-"""Messages as values with commas between them, as `ros2 topic echo --csv` prints them."""
+"""Messages as values with commas between them, as `ros2 topic echo --csv` prints them.
+
+Texts with a comma, a quote or the end of a line are in quotes, which ros2 leaves out (RFC 4180).
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ifgen_tools.texts.field_types import FieldType, field_types
-from ifgen_tools.texts.yaml_text import Style, abbreviated
+from ifgen_tools.texts.yaml_text import Style, abbreviated, cut
 
 
 def as_csv(message: Any, style: Style) -> str:
@@ -19,16 +22,21 @@ def _text(value: Any, style: Style, type_: FieldType | None = None) -> str:
     if isinstance(value, str):
         if style.no_str:
             return f"<string length: <{len(value)}>>"
-        return value if _fits(value, style) else f"{value[: style.longest]}..."
+        return _cell(cut(value, style))
     if isinstance(value, bytes):
-        return str(value if _fits(value, style) else value[: style.longest] + b"...")
+        return _cell(str(value if _fits(value, style) else value[: style.longest] + b"..."))
     if hasattr(value, "get_fields_and_field_types"):
         return as_csv(value, style)
     if not hasattr(value, "__len__"):  # a number
         return str(value)
     if style.no_arr and type_ is not None:
-        return abbreviated(len(value), type_)
+        return _cell(abbreviated(len(value), type_))
     return ",".join(_elements(value, style))
+
+
+def _cell(text: str) -> str:
+    """A text as one cell of a row."""
+    return '"' + text.replace('"', '""') + '"' if any(each in text for each in ',"\r\n') else text
 
 
 def _elements(values: Any, style: Style) -> Iterator[str]:

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 _ARRAY: Final = re.compile(r"(?P<element>.+)\[(?P<size>\d+)\]")
 _SEQUENCE: Final = re.compile(r"sequence<(?P<element>.+?)(, (?P<size>\d+))?>")
-_BOUND: Final = re.compile(r"<\d+>")
+_BOUND: Final = re.compile(r"<(\d+)>")
 
 INTEGERS: Final = {
     f"{prefix}int{bits}": (0, 2**bits - 1) if prefix else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
@@ -24,7 +24,8 @@ class FieldType:
     """The type of a field: that of one element, and how many there are.
 
     `element` is such as `double`, `string` or `geometry_msgs/msg/Point`. `size` is the number of elements of
-    an array, the bound of a sequence, or None. `attribute` is the name of the field in Python.
+    an array, the bound of a sequence, or None. `attribute` is the name of the field in Python. `longest` is
+    the bound of a string in characters.
     """
 
     element: str
@@ -32,6 +33,7 @@ class FieldType:
     is_array: bool = False
     is_sequence: bool = False
     size: int | None = None
+    longest: int | None = None
 
     @property
     def is_message(self) -> bool:
@@ -50,7 +52,8 @@ def field_types(cls: type[Any]) -> dict[str, FieldType]:
     if found is None:
         renamed: dict[str, str] = getattr(cls, "__renamed__", {})
         spelled: dict[str, str] = cls.get_fields_and_field_types()
-        found = {name: _read(text, renamed.get(name, name)) for name, text in spelled.items()}
+        folder = cls.__module__.split(".")[1]
+        found = {name: _read(text, renamed.get(name, name), folder) for name, text in spelled.items()}
         _known[cls] = found
     return found
 
@@ -84,16 +87,28 @@ def element_class(message: Any, name: str) -> type[Any]:
     return own
 
 
-def _read(text: str, attribute: str) -> FieldType:
+def _read(text: str, attribute: str, folder: str) -> FieldType:
+    bound = _BOUND.search(text)
+    longest = int(bound[1]) if bound else None
     if match := _ARRAY.fullmatch(text):
-        return FieldType(_element(match["element"]), attribute, is_array=True, size=int(match["size"]))
+        size: int | None = int(match["size"])
+        return FieldType(
+            _element(match["element"], folder), attribute, is_array=True, size=size, longest=longest
+        )
     if match := _SEQUENCE.fullmatch(text):
         size = int(match["size"]) if match["size"] else None
-        return FieldType(_element(match["element"]), attribute, is_sequence=True, size=size)
-    return FieldType(_element(text), attribute)
+        return FieldType(
+            _element(match["element"], folder), attribute, is_sequence=True, size=size, longest=longest
+        )
+    return FieldType(_element(text, folder), attribute, longest=longest)
 
 
-def _element(text: str) -> str:
-    """The type without the bound of a string, and a message with its `msg`."""
+def _element(text: str, folder: str) -> str:
+    """The type without the bound of a string, and a message with its folder.
+
+    That is `msg`, or for a part of a service or an action, such as `Add_Request`, that of its neighbours.
+    """
     package, slash, short = _BOUND.sub("", text).partition("/")
-    return f"{package}/msg/{short}" if slash and "/" not in short else f"{package}{slash}{short}"
+    if not slash or "/" in short:
+        return f"{package}{slash}{short}"
+    return f"{package}/{folder if '_' in short else 'msg'}/{short}"

@@ -6,7 +6,9 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from ifgen_runtime import yaml_text
+from ifgen_runtime import serialize, yaml_text
+from ifgen_runtime.errors import CodecError
+from ifgen_runtime.message import Message
 
 from ifgen_tools.errors import ToolError, did_you_mean
 from ifgen_tools.texts.field_types import INTEGERS, FieldType, element_class, field_types, type_name
@@ -38,6 +40,12 @@ def fill(message: Any, values: Any) -> list[SetStamp]:
     """
     stamps: list[SetStamp] = []
     _fill(message, {} if values is None else values, "", stamps)
+    if isinstance(message, Message):  # the setters of a real ROS have checked theirs
+        try:
+            serialize(message)
+        except CodecError as error:
+            where = error.path.partition(".")[2]
+            raise ToolError(f"the value of {where!r} does not fit: {error.problem}") from None
     return stamps
 
 
@@ -45,15 +53,14 @@ def _fill(message: Any, values: Any, path: str, stamps: list[SetStamp]) -> None:
     types = field_types(type(message))
     if not isinstance(values, Mapping):
         example = ", ".join(f"{name}: ..." for name in list(types)[:2])
-        raise _wrong(
-            path, f"expected the fields of {type_name(type(message))}", values, f"write {{{example}}}"
-        )
+        advice = _missing_space(values, types) or f"write {{{example}}}"
+        raise _wrong(path, f"expected the fields of {type_name(type(message))}", values, advice)
     for name, value in values.items():
         if name not in types:
             known = f"its fields are {', '.join(types) or 'none'}"
             raise ToolError(
                 f"{type_name(type(message))} has no field {_join(path, str(name))!r}",
-                did_you_mean(str(name), list(types)) or known,
+                _missing_space(name, types) or did_you_mean(str(name), list(types)) or known,
             )
         where = _join(path, name)
         converted = _converted(message, name, types[name], value, where, stamps)
@@ -61,7 +68,14 @@ def _fill(message: Any, values: Any, path: str, stamps: list[SetStamp]) -> None:
             try:
                 setattr(message, types[name].attribute, converted)
             except (AssertionError, TypeError, ValueError, OverflowError) as error:
-                raise ToolError(f"the value of {where!r} does not fit: {error}") from None
+                reason = " ".join(str(error).split())
+                raise ToolError(f"the value of {where!r} does not fit: {reason}") from None
+
+
+def _missing_space(text: Any, types: Mapping[str, FieldType]) -> str:
+    """Advice for `x:0`, which YAML takes for a text or a name; empty for everything else."""
+    name, colon, value = str(text).partition(":")
+    return f"write a space after the colon: {{{name}: {value or '...'}}}" if colon and name in types else ""
 
 
 _KEPT = object()
@@ -74,7 +88,7 @@ def _converted(
     if type_.is_collection:
         return _list(message, name, type_, value, where, stamps)
     if not type_.is_message:
-        return _basic(type_.element, value, where)
+        return _basic(type_, value, where)
     inner = getattr(message, type_.attribute)
     if type_.element == _HEADER and value == "auto":
         stamps.append(lambda stamp: setattr(inner, "stamp", stamp))
@@ -96,7 +110,7 @@ def _list(message: Any, name: str, type_: FieldType, values: Any, where: str, st
         raise ToolError(f"{where!r} has at most {type_.size} elements, and {len(values)} are given")
     places = [f"{where}[{index}]" for index in range(len(values))]
     if not type_.is_message:
-        return [_basic(type_.element, value, place) for value, place in zip(values, places, strict=True)]
+        return [_basic(type_, value, place) for value, place in zip(values, places, strict=True)]
     cls = element_class(message, name)
     elements = [cls() for _ in values]
     for element, value, place in zip(elements, values, places, strict=True):
@@ -104,9 +118,9 @@ def _list(message: Any, name: str, type_: FieldType, values: Any, where: str, st
     return elements
 
 
-def _basic(type_: str, value: Any, where: str) -> Any:
+def _basic(type_: FieldType, value: Any, where: str) -> Any:
     """A value in the Python type of the field."""
-    match type_:
+    match type_.element:
         case "boolean":
             if isinstance(value, bool) or value in (0, 1):
                 return bool(value)
@@ -114,7 +128,12 @@ def _basic(type_: str, value: Any, where: str) -> Any:
         case "float" | "double" | "long double":
             return _float(value, where)
         case "string" | "wstring":
-            return _text(value, where)
+            text = _text(value, where)
+            if type_.longest is not None and len(text) > type_.longest:  # a real ROS does not check it
+                raise ToolError(
+                    f"{where!r} has at most {type_.longest} characters, and {len(text)} are given"
+                )
+            return text
         case "char" | "wchar":  # of IDL: that of .msg is uint8
             if isinstance(value, str) and len(value) == 1:
                 return value
@@ -124,19 +143,31 @@ def _basic(type_: str, value: Any, where: str) -> Any:
                 return value.encode("latin-1", "replace") if isinstance(value, str) else value
             return bytes([_integer("uint8", value, where)])
         case _:
-            return _integer(type_, value, where)
+            return _integer(type_.element, value, where)
 
 
 def _text(value: Any, where: str) -> str:
+    if isinstance(value, str):
+        if problem := text_problem(value):
+            raise ToolError(f"the value of {where!r} does not fit: {problem}")
+        return value
     try:
-        if isinstance(value, str):
-            value.encode()
-            return value
         if isinstance(value, int | float) and not isinstance(value, bool):
             return str(value)  # as ROS does
-    except ValueError:  # half of a character, or more digits than Python writes
+    except ValueError:  # more digits than Python writes
         pass
     raise _wrong(where, "expected text", value, "put it in quotes within the YAML")
+
+
+def text_problem(text: str) -> str:
+    """The reason why no message can hold a text; empty if one can."""
+    if "\0" in text:
+        return "a text cannot hold a NUL: strings of ROS end there"
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        return f"character {error.start} is half of a surrogate pair, or a byte that is no UTF-8"
+    return ""
 
 
 def _float(value: Any, where: str) -> float:
@@ -159,15 +190,17 @@ def _integer(type_: str, value: Any, where: str) -> int:
 
 
 def _wrong(where: str, expected: str, value: Any, help: str = "") -> ToolError:
-    shown = _shown(value)
-    shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
-    return ToolError(
-        f"{f'the value of {where!r}' if where else 'the message'}: {expected}, got {shown}", help
-    )
+    place = f"the value of {where!r}" if where else "the message"
+    return ToolError(f"{place}: {expected}, got {shown(value)}", help)
 
 
-def _shown(value: Any) -> str:
-    """A value as it could be written."""
+def shown(value: Any) -> str:
+    """A value as it could be written, in a few words."""
+    text = _written(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _written(value: Any) -> str:
     try:
         return json.dumps(value)
     except TypeError:  # YAML knows dates, too

@@ -91,7 +91,13 @@ def find(**chosen: Any) -> int:
 @click.argument("message_type", metavar="[TYPE]", required=False, shell_complete=completion.message_types)
 @click.option("--once", is_flag=True, help="Print one message, and exit.")
 @click.option("--timeout", type=_POSITIVE, metavar="SECONDS", help="Exit after this time.")
-@click.option("--field", metavar="PATH", help="Only this field, such as pose.position.x or poses[0].x.")
+@click.option(
+    "--field",
+    "fields",
+    multiple=True,
+    metavar="PATH",
+    help="Only this field, such as pose.position.x or poses[0].x.",
+)
 @click.option(
     "--filter",
     "filter_expression",
@@ -130,6 +136,7 @@ def echo(
     no_arr: bool,
     no_str: bool,
     flow_style: bool,
+    fields: tuple[str, ...],
     **chosen: Any,
 ) -> int:
     """Print the messages of a topic.
@@ -143,8 +150,13 @@ def echo(
     forms = [form for form, is_chosen in (("csv", csv), ("json", as_json), ("raw", raw)) if is_chosen]
     if len(forms) > 1:
         raise click.UsageError(f"--{forms[0]} and --{forms[1]} exclude each other: leave out one")
+    if len(fields) > 1:
+        raise click.UsageError(
+            f"--field can be given once, not {len(fields)} times: name a message with both"
+        )
     style = Style(None if full_length else truncate_length, no_arr, no_str, flow_style)
-    return run(form=forms[0] if forms else "yaml", style=style, **chosen)
+    field = fields[0] if fields else None
+    return run(form=forms[0] if forms else "yaml", style=style, field=field, **chosen)
 
 
 @topic.command(epilog="Example: ifgen topic pub --once /cmd_vel geometry_msgs/msg/Twist '{linear: {x: 0.5}}'")

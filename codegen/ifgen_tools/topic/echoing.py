@@ -55,6 +55,7 @@ def echo(
     with open_session(transport, use_sim_time=use_sim_time) as session:
         topic = listening.find_topic(session, topic_name, spin_time, must_exist=message_type is None)
         cls = listening.class_on(session, topic, message_type)
+        listening.refuse_other_types(session, topic, cls)
         select = selector(cls, field) if field is not None else None
         show = _printer(Showing(form, style, include_message_info), select, wanted)
         shown: list[bool] = []

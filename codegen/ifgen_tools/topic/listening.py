@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING, Any, Final
 from ifgen_tools import qos
 from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session
+from ifgen_tools.texts.field_types import type_name
 from ifgen_tools.types import class_with_hash, interface_class, message_name, topic_class, topic_types
 
 if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
 # Late imports: rclpy is found once the session is open.
+
+_LOOK_EVERY: Final = 1.0
+"""Seconds between two looks at the types of a topic that is listened to."""
 
 _DEPTH: Final = 1000
 """Messages that wait for a tool unless the user says how many: those of a second, where they are small."""
@@ -42,14 +46,14 @@ def find_topic(session: Session, name: str, spin_time: float | None, *, must_exi
     return topic
 
 
-def class_on(session: Session, topic: str, type_name: str | None) -> type[Any]:
+def class_on(session: Session, topic: str, named: str | None) -> type[Any]:
     """The class of a topic, of the type that the user named if there is a name.
 
     If the topic has that type, its own definition of it counts. Raises ToolError.
     """
-    if type_name is None:
+    if named is None:
         return topic_class(session.node, topic)
-    written = message_name(type_name)
+    written = message_name(named)
     if (found := _class_in_use(session, topic, written)) is not None:
         return found
     try:
@@ -61,16 +65,38 @@ def class_on(session: Session, topic: str, type_name: str | None) -> type[Any]:
         raise
 
 
-def _class_in_use(session: Session, topic: str, type_name: str) -> type[Any] | None:
-    known = [each for each in topic_types(session.node, topic) if each.name == type_name]
+def _class_in_use(session: Session, topic: str, name: str) -> type[Any] | None:
+    known = [each for each in topic_types(session.node, topic) if each.name == name]
     return class_with_hash(session.node, topic, known[0]) if known else None
 
 
+def refuse_other_types(session: Session, topic: str, cls: type[Any]) -> None:
+    """Raise ToolError if a topic is there, and is of other types than the class."""
+    found = {each.name for each in topic_types(session.node, topic)}
+    if found and type_name(cls) not in found:
+        raise ToolError(
+            f"the topic {topic!r} has the type {' and '.join(sorted(found))}, not {type_name(cls)}",
+            f"see `ifgen topic type {topic}`",
+        )
+
+
 def wait_for_topic(session: Session, topic: str) -> type[Any]:
-    """The class of a topic, once somebody has it; says so if nobody has it yet. Raises ToolError."""
+    """The class of a topic, once somebody has it; says so if nobody has it yet. Raises ToolError.
+
+    If several types are on it, that of its publishers counts.
+    """
     if not topic_types(session.node, topic):
         print(f"WARNING: topic [{topic}] does not appear to be published yet", file=sys.stderr, flush=True)
         session.wait_for(lambda: bool(topic_types(session.node, topic)))
+    published = {info.topic_type for info in session.node.get_publishers_info_by_topic(topic)}
+    types = topic_types(session.node, topic)
+    if len(published) > 1 or (not published and len({each.name for each in types}) > 1):
+        names = ", ".join(sorted(published or {each.name for each in types}))
+        raise ToolError(
+            f"the topic {topic!r} has more than one type: {names}", f"see `ifgen topic info -v {topic}`"
+        )
+    if published:
+        return class_with_hash(session.node, topic, next(each for each in types if each.name in published))
     return topic_class(session.node, topic)
 
 
@@ -107,3 +133,18 @@ def listen(
         subscribe(cls, topic, hear, profile, raw=raw, event_callbacks=events)
     except UnsupportedEventTypeError:  # this middleware does not tell
         subscribe(cls, topic, hear, profile, raw=raw)
+    _watch_types(session, topic, type_name(cls))
+
+
+def _watch_types(session: Session, topic: str, name: str) -> None:
+    """Say once on stderr that a topic is published as another type: nothing would be heard."""
+    from rclpy.clock import Clock, ClockType
+
+    def check() -> None:
+        published = {info.topic_type for info in session.node.get_publishers_info_by_topic(topic)}
+        if published and name not in published:
+            timer.cancel()
+            others = ", ".join(sorted(published))
+            print(f"WARNING: {topic} is published as {others}, not as {name}", file=sys.stderr, flush=True)
+
+    timer = session.node.create_timer(_LOOK_EVERY, check, clock=Clock(clock_type=ClockType.STEADY_TIME))

@@ -167,7 +167,7 @@ def bw(
 
 def _bandwidth_text(topic: str, sizes: list[int], seconds: float, as_json: bool) -> str:
     found = spread(sizes)
-    rate = sum(sizes) / seconds
+    rate = sum(sizes[1:]) / seconds  # the time begins with the first one
     if as_json:
         return _json(topic, {"bytes_per_second": rate, "mean": found.mean}, found)
     factor, unit, digits = (1, "B", 0) if rate < 1e3 else (1e3, "KB", 2) if rate < 1e6 else (1e6, "MB", 2)

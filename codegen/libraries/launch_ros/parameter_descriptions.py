@@ -5,11 +5,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
-import yaml
+from ifgen_runtime import parameter_yaml
 from launch.launch_context import LaunchContext
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
@@ -48,7 +48,15 @@ class ParameterFile:
         path = perform_substitutions(context, self.param_file)
         if performed(context, self.allow_substs).lower() not in {"true", "1"}:
             return Path(path)
-        return Path(context.host.text_file(filled(path, context)))
+        file: str = context.host.text_file(filled(path, context))
+        entries: dict[str, parameter_yaml.Entry] = {}
+        try:
+            parameter_yaml.read_file(file, lambda node: entries.setdefault(node, {}))
+        except parameter_yaml.ParameterYamlError as error:
+            raise RuntimeError(
+                f"the parameter file '{path}' cannot be read after its substitutions: {error.reason}"
+            ) from None
+        return Path(file)
 
 
 class Parameter:
@@ -61,6 +69,10 @@ class Parameter:
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
         """Return the name and the value. Raises TypeError."""
         return perform_substitutions(context, self.name), self.value.evaluate(context)
+
+
+PASS_AS_TEXT = "ParameterValue(..., value_type=str) passes a text as it is"
+"""Advice for a launch file in Python. `ifgen launch` replaces it for files in XML and YAML."""
 
 
 class Text(str):
@@ -85,7 +97,7 @@ def _is_one_text(parts: Sequence[Any]) -> bool:
 
 
 def typed(value: Any, wanted: Any) -> Any:
-    """Return a value of the type that is wanted; None: of the one that YAML reads in a Text.
+    """Return a value of the type that is wanted; None: of the one that nodes read in a Text.
 
     Raises TypeError.
     """
@@ -93,13 +105,35 @@ def typed(value: Any, wanted: Any) -> Any:
         return _of_any_type(value)
     item = get_args(wanted)[0] if get_origin(wanted) is not None else None
     if item is not None:
-        items = yaml.safe_load(value) if isinstance(value, str) else value
-        if not isinstance(items, list | tuple):
+        if isinstance(value, str):
+            return [_element(text, read, item) for text, read in _read(value, parameter_yaml.read_elements)]
+        if not isinstance(value, list | tuple):
             raise TypeError(f"expected a list, got {value!r}")
-        return [typed(each, item) for each in items]
+        return [typed(each, item) for each in value]
     if wanted is str:
         return str(value)
-    read = yaml.safe_load(value) if isinstance(value, str) else value
+    return _element(value, _read(value, parameter_yaml.value_of) if isinstance(value, str) else value, wanted)
+
+
+def _read(text: str, reader: Callable[[str], Any]) -> Any:
+    """Read a text as nodes do. Raises TypeError."""
+    try:
+        return reader(text)
+    except parameter_yaml.ParameterYamlError as error:
+        raise TypeError(f"the text {text!r} is no value of a parameter: {error.reason}") from None
+
+
+def _value(text: str) -> Any:
+    """A value, or the elements of a list, which may have several types."""
+    if text.lstrip().startswith("["):
+        return [value for _, value in parameter_yaml.read_elements(text)]
+    return parameter_yaml.value_of(text)
+
+
+def _element(value: Any, read: Any, wanted: type) -> Any:
+    """Return what was read in a value, in the type that is wanted. Raises TypeError."""
+    if wanted is str:
+        return str(value)
     if wanted is float and isinstance(read, int) and not isinstance(read, bool):
         return float(read)
     if type(read) is not wanted:
@@ -110,17 +144,14 @@ def typed(value: Any, wanted: Any) -> Any:
 def _of_any_type(value: Any) -> Any:
     if isinstance(value, Text):
         try:
-            value = yaml.safe_load(value) if value else ""
-        except yaml.YAMLError:
-            raise TypeError(
-                f"the text {str(value)!r} is not YAML: ParameterValue(..., value_type=str) passes it as it is"
-            ) from None
+            value = _read(value, _value) if value else ""
+        except TypeError as error:
+            raise TypeError(f"{error}; {PASS_AS_TEXT}") from None
     if isinstance(value, list | tuple):
         return _uniform([_of_any_type(each) for each in value])
     if not isinstance(value, (*_SCALARS, bytes)):
         raise TypeError(
-            f"expected a bool, a number, a text, or a list of these, got {value!r}; "
-            "ParameterValue(..., value_type=str) passes a text as it is"
+            f"expected a bool, a number, a text, or a list of these, got {value!r}; {PASS_AS_TEXT}"
         )
     return value
 

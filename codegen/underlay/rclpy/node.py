@@ -251,6 +251,7 @@ class Node:
             self._parameter_overrides = self.handle.get_parameters(Parameter)
         self._parameter_overrides.update({override.name: override for override in parameter_overrides or ()})
         follow_policy(self)
+        self.handle.use_parameters(None if allow_undeclared_parameters else [ON_TYPE_MISMATCH])
         self._clock = ROSClock()
         if automatically_declare_parameters_from_overrides:
             given = [
@@ -415,6 +416,7 @@ class Node:
             for index, entry in enumerate(parameters)
         ]
         names = [parameter.name for parameter, _ in declarations]
+        self.handle.use_parameters(names)
         if known := [name for name in names if name in self._parameters]:
             raise ParameterAlreadyDeclaredException(known)
         self._declare_parameter_common(

@@ -6,13 +6,13 @@ import itertools
 import os
 from collections.abc import Iterable
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, Final, TypeAlias
 
 from rmw_local import observer, timing
 from rmw_local.allocator import keep_freed_memory
 from rmw_local.domain import Domain, endpoints
 from rmw_local.qos import INFINITE, TRANSIENT_LOCAL, resolve_offered, resolve_requested
-from rmw_local.reader import LifespanReader, Reader
+from rmw_local.reader import LifespanReader, Reader, UnboundedLifespanReader, UnboundedReader
 from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceQos, ServiceServer
 from rmw_local.writer import DurableWriter, Writer
 
@@ -25,6 +25,15 @@ if TYPE_CHECKING:
     from rmw_local.ready import ReadySource
 
 Entity: TypeAlias = "GraphNode | Writer | Reader | ServiceEndpoint"
+
+
+# By whether messages grow too old, and whether all are kept.
+_READERS: Final[dict[tuple[bool, bool], type[Reader]]] = {
+    (False, False): Reader,
+    (False, True): UnboundedReader,
+    (True, False): LifespanReader,
+    (True, True): UnboundedLifespanReader,
+}
 
 
 def range_is_off() -> bool:
@@ -165,7 +174,7 @@ class GraphNode:
             self.participant.claim(topic, message_type.name)
             place = domain.topic(topic)
             resolved = resolve_requested(qos, [writer.qos for writer in place.writers])
-            make = LifespanReader if resolved.lifespan < INFINITE else Reader
+            make = _READERS[resolved.lifespan < INFINITE, resolved.queue_length is None]
             reader = make(self, message_type, topic, resolved)
             changed = place.add_reader(reader)
         self.announce(reader, changed)

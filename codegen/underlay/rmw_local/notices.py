@@ -18,6 +18,11 @@ def say(text: str) -> None:
         sys.stderr.write(f"rmw_local: {text}\n")
 
 
+def printable(text: str) -> str:
+    """The text with a question mark in place of all that could control a terminal or end a line."""
+    return text if text.isprintable() else "".join(each if each.isprintable() else "?" for each in text)
+
+
 class Repeated:
     """Something that may happen often, and is said at most once a second: others must not fill a log.
 
@@ -42,7 +47,7 @@ class Repeated:
                 return
             self._told = second
             count, self._untold = self._untold, 0
-        say(self._text.format(count=count, s="" if count == 1 else "s", why=why))
+        say(self._text.format(count=count, s="" if count == 1 else "s", why=printable(why)))
 
 
 class Drops(Repeated):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from rmw_local import observer, timing
 from rmw_local.endpoint import Endpoint
+from rmw_local.notices import say
 from rmw_local.qos import INFINITE
 from rmw_local.ready import ReadySource
 from rmw_local.status import DeadlineStatus, LivelinessChangedStatus, Status
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
     from rmw_local.message import MessageType
     from rmw_local.mismatch.origin import Origin
     from rmw_local.qos import QosProfile
+
+_MUCH: Final = 5000
+"""The number of messages that Fast DDS keeps for a subscription that keeps all."""
 
 # One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages,
 # stamp of its arrival [ns, system time]). All readers share it. Bytes rather than objects: an unread message
@@ -152,3 +157,33 @@ class LifespanReader(Reader):
                 self._queue.popleft()
         except IndexError:
             return
+
+
+class UnboundedReader(Reader):
+    """A reader that keeps all: it says once when very much waits."""
+
+    _much = _MUCH
+
+    def accept(self, sample: Sample) -> None:
+        """Queue a message and notify the listeners. The caller holds no lock."""
+        super().accept(sample)
+        if len(self._queue) > self._much:
+            self._say_so()
+
+    def announce(self) -> None:
+        """Notify the listeners that wait for messages."""
+        super().announce()
+        if len(self._queue) > self._much:
+            self._say_so()
+
+    def _say_so(self) -> None:
+        self._much = sys.maxsize
+        say(
+            f"more than {_MUCH} messages wait for a subscription of {self.node.full_name} to '{self.topic}', "
+            "which keeps all: their memory grows without end, where Fast DDS would drop what comes now. Spin "
+            "the node more often, or use KEEP_LAST with a depth"
+        )
+
+
+class UnboundedLifespanReader(UnboundedReader, LifespanReader):
+    """Both of these."""

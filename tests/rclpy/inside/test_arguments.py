@@ -11,12 +11,13 @@ from typing import Any
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from ifgen_runtime.parameter_scalars import read_scalar
 from rclpy.impl.rcl import names
 from rclpy.impl.rcl.arguments import Arguments, parse_arguments, rclpy_remove_ros_args
 from rclpy.impl.rcl.errors import RCLError, UnknownROSArgsError
 from rclpy.impl.rcl.lexer import RuleError
 from rclpy.impl.rcl.parameter_files import read_file
-from rclpy.impl.rcl.parameters import ParameterOverrides, parse_override_rule, read_scalar
+from rclpy.impl.rcl.parameters import ParameterOverrides, parse_override_rule
 from rclpy.impl.rcl.remapping import parse_remap_rule, remapped_topic
 
 RULE_PIECES = st.sampled_from(
@@ -138,10 +139,46 @@ def test_floats_are_read_as_written(number: float) -> None:
     assert read == number
 
 
+@pytest.mark.parametrize(
+    ("rule", "declared", "expected"),
+    [
+        (
+            "wdth:=3",
+            ["width"],
+            "The parameter 'wdth' was given, but no node declared it: did you mean 'width'?",
+        ),
+        ("width:=3", ["width"], ""),
+        ("wdth:=3", None, ""),
+        ("arn:width:=3", ["width"], "Parameters for arn were given, but there was no such node: only /arm"),
+        ("arm:width:=3", ["width"], ""),
+        ("arm:w:=3", [], "The parameter 'w' was given, but no node declared it"),
+    ],
+)
+def test_overrides_that_nobody_takes(rule: str, declared: list[str] | None, expected: str) -> None:
+    overrides = ParameterOverrides()
+    parse_override_rule(rule, overrides)
+    overrides.use("/arm", declared)
+    assert list(overrides.unused()) == ([expected] if expected else [])
+
+
+def test_a_file_for_several_nodes_is_as_it_should_be(tmp_path: Path) -> None:
+    """What it says for all, or for nodes elsewhere, is no mistake of this process."""
+    file = tmp_path / "p.yaml"
+    file.write_text(
+        "/**: {ros__parameters: {a: 1}}\n/arm: {ros__parameters: {b: 1}}\n/leg: {ros__parameters: {c: 1}}\n"
+    )
+    overrides = ParameterOverrides()
+    read_file(str(file), overrides)
+    assert list(overrides.unused()) == []  # no node was made
+    overrides.use("/arm", ["b"])
+    assert list(overrides.unused()) == []
+
+
 def test_endless_numbers_are_text() -> None:
     """Python refuses to read more than 4,300 digits; C finds them too large for any type."""
     assert read_scalar("1" * 5000) == "1" * 5000
     assert read_scalar("1" * 25) == float("1" * 25)
+    assert read_scalar(f"0x1p-{'0' * 5000}1074") == f"0x1p-{'0' * 5000}1074"
 
 
 @given(st.text(max_size=10))

@@ -394,6 +394,8 @@ def test_who_is_private() -> None:
         {"ZENOH_SESSION_CONFIG_URI": "own.json5"},
         {"ZENOH_CONFIG_OVERRIDE": "access_control/enabled=true"},
         {"ZENOH_CONFIG_OVERRIDE": 'listen/endpoints=["tcp/[::]:0"]'},
+        {"ZENOH_CONFIG_OVERRIDE": 'transport/link/protocols=["tcp"]'},
+        {"ZENOH_CONFIG_OVERRIDE": 'transport={link:{protocols:["tcp"]}}'},
     ]
     assert all(environment.read(variables).is_private for variables in private)
     assert not any(environment.read(variables).is_private for variables in others)

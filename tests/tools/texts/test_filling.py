@@ -23,6 +23,8 @@ bool flag
 byte one
 geometry_msgs/Point[<=2] points
 string[] names
+string<=4 short
+string<=2[] shorts
 """
 
 
@@ -93,7 +95,18 @@ def test_the_time_of_sending(message: Any) -> None:
             "its fields are x, y, z",
         ),
         ("{text: yes}", "the value of 'text': expected text, got true", "put it in quotes within the YAML"),
-        ('{text: "\\ud800"}', "the value of 'text': expected text, got \"\\ud800\"", "put it in quotes"),
+        (
+            '{text: "\\ud800"}',
+            "the value of 'text' does not fit: character 0 is half of a surrogate pair, or a byte that is no UTF-8",
+            "",
+        ),
+        (
+            '{text: "a\\0b"}',
+            "the value of 'text' does not fit: a text cannot hold a NUL: strings of ROS end there",
+            "",
+        ),
+        ("{short: abcdef}", "'short' has at most 4 characters, and 6 are given", ""),
+        ("{shorts: [ab, abc]}", "'shorts[1]' has at most 2 characters, and 3 are given", ""),
         ("{flag: maybe}", "the value of 'flag': expected true or false, got \"maybe\"", ""),
         ("{one: 256}", "the value of 'one': expected uint8, which is 0 to 255, got 256", ""),
         (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import math
 from typing import Any
@@ -15,6 +17,7 @@ from ifgen_tools.texts import yaml_text
 from ifgen_tools.texts.csv_text import as_csv
 from ifgen_tools.texts.json_text import as_json
 from ifgen_tools.texts.yaml_text import Style, as_yaml
+from sensor_msgs.msg import JointState
 
 DEFINITION = """\
 std_msgs/Header header
@@ -98,6 +101,17 @@ def test_without_arrays_and_strings(message: Any) -> None:
     assert found["ranges"] == "<sequence type: float, length: 0>"
     assert found["names"] == "<sequence type: string[3], length: 2>"
     assert found["points"] == "<sequence type: geometry_msgs/msg/Point, length: 2>"
+
+
+def test_csv_in_quotes() -> None:
+    """As spreadsheets, pandas and Python's csv read it again."""
+    texts = ["a,b", 'say "a"', "two\nlines", "plain", " x", ""]
+    message = JointState(name=texts, position=[0.1])
+    [row] = csv.reader(io.StringIO(as_csv(message, Style())))
+    assert row[3:10] == [*texts, "0.1"]
+    assert (
+        as_csv(JointState(name=["a"]), Style(no_arr=True)).count('"<sequence type: string, length: 1>"') == 1
+    )
 
 
 def test_csv(message: Any) -> None:

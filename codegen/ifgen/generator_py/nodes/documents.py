@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Final
 
 from ifgen.generator_py.nodes.parameters import constraints, declared
 from ifgen.nodl.model import (
@@ -18,6 +19,8 @@ from ifgen.nodl.model import (
 from ifgen.nodl.syntax.texts import comment, quoted
 from ifgen.nodl.validators import is_custom
 from ifgen.nodl.values import spelled
+
+_WORDS: Final = frozenset({"y", "n", "yes", "no", "on", "off", "true", "false", "null"})
 
 
 def description_lines(node: NodeDescription) -> Iterator[str]:
@@ -39,7 +42,7 @@ def description_lines(node: NodeDescription) -> Iterator[str]:
 def config_lines(node: NodeDescription) -> Iterator[str]:
     """Every parameter with its default; as a comment where it must be given, or cannot be given in a file."""
     parameters = declared(node)
-    if all(parameter.default is None or parameter.type.base == "byte" for parameter in parameters):
+    if not any(map(_is_held_by_files, parameters)):
         yield "    {}"
     for parameter in parameters:
         notes = [parameter.description, *(text[:1].upper() + text[1:] for text in constraints(parameter))]
@@ -47,15 +50,21 @@ def config_lines(node: NodeDescription) -> Iterator[str]:
             yield from (f"    # {line}".rstrip() for line in comment(note))
         if parameter.default is None:
             yield f"    # {parameter.name}: must be given"
-        elif parameter.type.base == "byte":
+        elif not _is_held_by_files(parameter):
+            kind = "bytes" if parameter.type.base == "byte" else "empty arrays"
             value = _value(parameter.default)
-            yield f"    # {parameter.name}: {value}; ROS reads no bytes from a parameter file"
+            yield f"    # {parameter.name}: {value}; ROS reads no {kind} from a parameter file"
         else:
-            yield f"    {parameter.name}: {_value(parameter.default)}"
+            yield f"    {_key(parameter.name)}: {_value(parameter.default)}"
+
+
+def _is_held_by_files(parameter: Parameter) -> bool:
+    """Whether a parameter file can hold the default, if there is one."""
+    return parameter.default not in (None, ()) and parameter.type.base != "byte"
 
 
 def _parameter(parameter: Parameter) -> Iterator[str]:
-    yield f"  {parameter.name}:"
+    yield f"  {_key(parameter.name)}:"
     yield f"    type: {spelled(parameter.type)}"
     if parameter.default is not None:
         yield f"    default_value: {_value(parameter.default)}"
@@ -70,6 +79,11 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
         for validator in parameter.validators:
             mark = "" if is_custom(validator) else "<>"  # NoDL's schema takes it for its own only
             yield f"      {validator.name}{mark}: {_arguments(validator)}"
+
+
+def _key(name: str) -> str:
+    """A name as a key: YAML 1.1 reads some words as something else."""
+    return quoted(name) if name.lower() in _WORDS else name
 
 
 def _arguments(validator: Validator) -> str:

@@ -118,13 +118,13 @@ def bad_number(span: Span, text: str) -> Diagnostic:
     return Diagnostic("invalid-number", f"`{text}` is not a number that can be read", Label(span))
 
 
-def unclear_number(node: ScalarNode, text: str) -> Diagnostic:
+def unclear_number(value: int, span: Span, text: str) -> Diagnostic:
     """Say that YAML 1.1 reads a number as people do not."""
     return Diagnostic(
         "unclear-number",
-        f"YAML 1.1 reads `{shorten(text)}` as {node.value}",
-        Label(node.span),
-        help="write the number without a leading zero and without `:`, or put it in quotes",
+        f"YAML 1.1 reads `{shorten(text)}` as {value}",
+        Label(span),
+        help="write the number without a leading zero, or put it in quotes",
     )
 
 
@@ -214,7 +214,8 @@ def yaml_surprise(node: Node, expected: str) -> str | None:
     if isinstance(node.value, str):
         if "number" not in expected and "integer" not in expected:
             return None
-        if _JSON_NUMBER.fullmatch(written):
+        is_of_int = "64 bits" in expected  # a parameter, of which no float is a value
+        if _JSON_NUMBER.fullmatch(written) and not is_of_int:
             return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{_as_float(written)}`"
         if _OCTAL.fullmatch(written):
             return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{int(written, 8)}`"

@@ -26,11 +26,15 @@ class Foreign:
 
 @dataclass(frozen=True, slots=True)
 class ScalarNode:
-    """A text, number, truth value or null; `plain` if it stands there without quotes."""
+    """A text, number, truth value or null; `plain` if it stands there without quotes.
+
+    `written` is the text of a plain one in YAML, which a parameter file may read otherwise.
+    """
 
     value: str | int | float | bool | Foreign | None
     span: Span
     plain: bool = True
+    written: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,8 +30,6 @@ _CONSTRUCTOR: Final = yaml.constructor.SafeConstructor()
 _TAG: Final = "tag:yaml.org,2002:"
 _WRITTEN_TAG: Final = re.compile(r"!\S*")
 _LEADING_ZERO: Final = re.compile(r"[-+]?0[0-9_]+")
-_LONGEST_SEXAGESIMAL: Final = 100
-"""Characters of the longest `1:30:00` that is read: it takes a time that is quadratic in them."""
 
 
 class UnreadableError(Exception):
@@ -149,32 +147,32 @@ class _Composer:
         if not plain:
             return ScalarNode(text, span, plain=False)
         tag = str(_RESOLVER.resolve(yaml.ScalarNode, text, (True, False))).removeprefix(_TAG)  # type: ignore[no-untyped-call]
+        return ScalarNode(self._value(tag, text, span), span, written=text)
+
+    def _value(self, tag: str, text: str, span: Span) -> str | int | float | bool | Foreign | None:
         node = yaml.ScalarNode(tag, text)
         try:
-            if tag in ("int", "float") and ":" in text and len(text) > _LONGEST_SEXAGESIMAL:
-                raise ValueError
             match tag:
                 case "null":
-                    return ScalarNode(None, span)
+                    return None
                 case "bool":
-                    return ScalarNode(_CONSTRUCTOR.construct_yaml_bool(node), span)
+                    return _CONSTRUCTOR.construct_yaml_bool(node)
+                case "int" | "float" if ":" in text:
+                    return text  # YAML 1.1 reads 1:30 as 90, people and nodes as a text
                 case "int":
-                    return self._clear(ScalarNode(int(_CONSTRUCTOR.construct_yaml_int(node)), span), text)
+                    value = int(_CONSTRUCTOR.construct_yaml_int(node))
+                    if _LEADING_ZERO.fullmatch(text) and int(text, 10) != value:
+                        self._problems.error(explain.unclear_number, value, span, text)
+                    return value
                 case "float":
-                    return self._clear(ScalarNode(float(_CONSTRUCTOR.construct_yaml_float(node)), span), text)
+                    return float(_CONSTRUCTOR.construct_yaml_float(node))
                 case "timestamp":
-                    return ScalarNode(Foreign("a date"), span)
+                    return Foreign("a date")
                 case _:
-                    return ScalarNode(text, span)
+                    return text
         except ValueError:  # an integer of thousands of digits, `0b`, `0x_`
             self._problems.error(explain.bad_number, span, shorten(text))
-            return ScalarNode(0, span)
-
-    def _clear(self, node: ScalarNode, text: str) -> ScalarNode:
-        """The number, after a word on those that people read otherwise: 010 is 8, and 1:30 is 90."""
-        if ":" in text or (_LEADING_ZERO.fullmatch(text) and int(text, 10) != node.value):
-            self._problems.error(explain.unclear_number, node, text)
-        return node
+            return 0
 
     def _closed(self, opened: _Open, end: yaml.Event) -> ListNode | MapNode:
         size = 1 + sum(size_of(value) for value in opened.values)

@@ -6,11 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from ifgen_runtime.parameter_scalars import read_scalar
 
 from ifgen_tools.launching.errors import LaunchError, Place
 from ifgen_tools.launching.reading.tree import MAX_DEPTH, Element
 
 _CHILDREN = "children"
+_PARAMETERS = ("param", "set_parameter")
 
 
 def read_yaml(file: Path, text: str) -> Element:
@@ -64,7 +66,8 @@ class _File:
             elif isinstance(value, yaml.MappingNode):
                 raise LaunchError(f"'{key}' of '{kind}' must be a value or a list, got a mapping", key_place)
             else:
-                element.attributes[key] = (self._value(value), self._place(value))
+                read = self._parameter if key == "value" and kind in _PARAMETERS else self._value
+                element.attributes[key] = (read(value), self._place(value))
         return element
 
     def _entities(self, node: yaml.SequenceNode, depth: int) -> list[Element]:
@@ -109,6 +112,16 @@ class _File:
         if value is not None and not isinstance(value, bool | int | float | str):
             raise LaunchError(f"a value of type {type(value).__name__}: put it in quotes", place)
         return value
+
+    def _parameter(self, node: yaml.Node) -> Any:
+        """The value of a parameter, whose scalars are those of a parameter file."""
+        if isinstance(node, yaml.SequenceNode) and all(
+            isinstance(each, yaml.ScalarNode) for each in node.value
+        ):
+            return [self._parameter(each) for each in node.value]
+        if isinstance(node, yaml.ScalarNode) and node.value and not node.style:
+            return read_scalar(node.value)
+        return self._value(node)
 
     def _place(self, node: yaml.Node) -> Place:
         return self._path, node.start_mark.line + 1

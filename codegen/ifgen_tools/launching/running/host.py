@@ -13,8 +13,8 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, Final
 
-import yaml
 from ifgen.running.finding import packages
+from ifgen_runtime import parameter_yaml
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
 from launch.action import Action
 from launch.actions import ExecuteProcess
@@ -275,7 +275,14 @@ class LaunchHost:
         for name, value in parameters.items():
             if isinstance(value, bytes):
                 raise LaunchError(f"the parameter '{name}' is bytes, which no parameter file can hold")
-        return self.text_file(yaml.dump({node: {"ros__parameters": dict(parameters)}}, Dumper=_Quoting))
+            if parameter_yaml.is_beyond_files(value):
+                self.output.log(
+                    "WARNING",
+                    "launch",
+                    f"the parameter '{name}' is an empty list, which no parameter file can hold: "
+                    "the node keeps its default value",
+                )
+        return self.text_file(parameter_yaml.file_text(node, parameters))
 
     def text_file(self, text: str) -> str:
         """Write a text to a file that is there as long as the launch is."""
@@ -327,15 +334,6 @@ class LaunchHost:
     def log_directory(self) -> str:
         """The folder of the log files of this launch."""
         return str(self.output.folder)
-
-
-class _Quoting(yaml.SafeDumper):
-    """Puts texts in quotes: rcl takes `y` and `off` for truths, which PyYAML leaves bare."""
-
-
-_Quoting.add_representer(
-    str, lambda dumper, text: dumper.represent_scalar("tag:yaml.org,2002:str", text, style='"')
-)
 
 
 def _ending_signals() -> list[signal.Signals]:

@@ -21,8 +21,8 @@ _PROTOCOLS: Final = ("tcp", "tls", "quic", "udp", "ws")
 _NOT_IN_HOSTS: Final = frozenset(" \t,/")
 _POOL: Final = 64 * 1024 * 1024  # bytes
 _LARGE: Final = 192 * 1024  # bytes; below, notices cost more than copies save (benchmarks/processes.py)
-_OF_OTHERS: Final = ("access_control", "connect", "listen", "mode", "scouting")
-"""Parts of Zenoh's configuration that say who is found, and who is kept out."""
+_OF_NOBODY: Final = ("queries_default_timeout", "timestamping/", "transport/link/tx/", "transport/link/rx/")
+"""Parts of Zenoh's configuration that do not change who is found, and who is kept out; others may."""
 NO_END: Final = 2**31
 """A number of attempts."""
 
@@ -50,7 +50,7 @@ class Environment:
     @property
     def is_private(self) -> bool:
         """Whether only this user's processes on this machine are met, and Zenoh keeps none of them out."""
-        is_plain = not any(path.startswith(_OF_OTHERS) for path, _ in self.overrides)
+        is_plain = all(path.startswith(_OF_NOBODY) for path, _ in self.overrides)
         return is_plain and not (self.subnet or self.expects_router)
 
     @property

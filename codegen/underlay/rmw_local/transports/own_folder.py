@@ -12,9 +12,14 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
+def own_name() -> str:
+    """The name of the user's folders."""
+    return f"ifgen-{os.getuid()}"
+
+
 def own_folder(base: Path) -> Path:
     """The user's folder in `base`, which nobody else can look into. Raises TransportError."""
-    folder = base / f"ifgen-{os.getuid()}"
+    folder = base / own_name()
     try:
         folder.mkdir(mode=0o700, exist_ok=True)
         status = folder.lstat()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from std_msgs.msg import Float64
 
-from tests.rclpy.inside.contract.processes import DURABLE, Pair
+from tests.rclpy.inside.contract.processes import DURABLE, Pair, connected
 
 
 def test_late_subscriptions_get_what_durable_publishers_have_kept(two: tuple[Pair, Node, Node]) -> None:
@@ -53,3 +55,32 @@ def test_keep_all_is_kept(two: tuple[Pair, Node, Node]) -> None:
     other.create_subscription(Float64, "all", lambda message: heard.append(message.data), everything)
     pair.until(lambda: len(heard) == 300)
     assert heard == [float(number) for number in range(300)]
+
+
+@pytest.mark.parametrize("durability", [DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL])
+@pytest.mark.parametrize("lifespan", [0, 3600])
+def test_very_much_that_waits_is_said_once(
+    durability: DurabilityPolicy, lifespan: int, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """And only of a subscription that keeps all. It has everything, where Fast DDS has 5,000 messages."""
+    with connected("inside") as pair:
+        process = pair.process("one")
+        profiles = [
+            QoSProfile(history=history, depth=10, durability=durability, lifespan=Duration(seconds=lifespan))
+            for history in (HistoryPolicy.KEEP_ALL, HistoryPolicy.KEEP_LAST)
+        ]
+        heard: list[list[float]] = [[], []]
+        for kept, profile in zip(heard, profiles, strict=True):
+            process.node.create_subscription(
+                Float64, "all", lambda message, kept=kept: kept.append(message.data), profile
+            )
+        publisher = process.node.create_publisher(Float64, "all", profiles[1])
+        for _ in range(5000):
+            publisher.publish(Float64(data=0.1))
+        assert not capfd.readouterr().err
+        for _ in range(3):
+            publisher.publish(Float64(data=0.2))
+        (line,) = capfd.readouterr().err.splitlines()
+        assert "5000 messages wait for a subscription of /one to '/all', which keeps all" in line
+        pair.until(lambda: len(heard[0]) == 5003)
+        assert len(heard[1]) == 10

@@ -51,7 +51,8 @@ def test_result(ifgen: Run, spinning: Counter) -> None:
 
 
 def test_rejected_and_aborted(ifgen: Run, spinning: Counter) -> None:
-    assert ifgen("action", "send_goal", "/count", TYPE, "{order: -1}").out.endswith("\nGoal was rejected.\n")
+    rejected = ifgen("action", "send_goal", "/count", TYPE, "{order: -1}")
+    assert (rejected.code, rejected.out.endswith("\nGoal was rejected.\n")) == (1, True)
     aborted = ifgen("action", "send_goal", "/count", TYPE, "{order: 3}").out
     assert aborted.endswith("\nGoal finished with status: ABORTED\n")
 

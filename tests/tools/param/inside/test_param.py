@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import json
+from array import array
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import pytest
 import rclpy
 import yaml
+from ifgen_runtime import parameter_yaml
+from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 
 from tests.cli.conftest import Run
@@ -150,11 +155,14 @@ def test_a_dump_can_be_loaded(param: Run, robot: Node, tmp_path: Path) -> None:
     text = param("dump", ARM).out
     values = yaml.safe_load(text)[ARM]["ros__parameters"]
     assert values["foo"] == {"bar": {"text": "x"}, "text": "5"}
-    assert values["bytes"] == [97, 255]
+    assert "bytes" not in values
+    assert text.endswith("    #ifgen: bytes: [97, 255]\n\n")
     assert "unset" not in values
-    assert json.loads(param("dump", ARM, "--json").out) == {ARM: {"ros__parameters": values}}
+    everything = values | {"bytes": [97, 255]}
+    assert json.loads(param("dump", ARM, "--json").out) == {ARM: {"ros__parameters": everything}}
     file = tmp_path / "arm.yaml"
-    file.write_text(yaml.safe_dump({ARM: {"ros__parameters": values | {"speed": 0.2}}}))
+    file.write_text(text.replace("speed: 0.1", "speed: 0.2"))
+    robot.set_parameters([Parameter("bytes", Parameter.Type.BYTE_ARRAY, [])])
     loaded = param("load", ARM, file)
     assert (loaded.code, loaded.err) == (0, "")
     assert "Set parameter speed successful\n" in loaded.out
@@ -186,9 +194,14 @@ def test_load_of_wildcards_and_namespaces(param: Run, robot: Node, tmp_path: Pat
             "/b: {ros__parameters: {a: 1}}",
             "has no parameters for '/robot/arm' = help: it has parameters for: /b",
         ),
-        ("[1", "is no YAML: "),
+        ("{'", "it is no YAML: "),
+        ("[1", "Sequences cannot be key at line 1 = help: it begins with the name of a node"),
+        ("/robot/arm: {ros__parameters: {bytes: [1, 256]}}", "the value 256 in 'bytes' fits no byte"),
         ("5", "is no parameter file"),
-        ("robot/arm: {ros__parameters: {speed: [1, a]}}", "the value [1, 'a'] of 'speed' fits no parameter"),
+        (
+            "robot/arm: {ros__parameters: {speed: [1, a]}}",
+            "line 1: the elements of a list have one type, but 'a' has another",
+        ),
         ("robot/arm: {ros__parameters: {speed: fast}}", "Set parameter speed failed: Wrong parameter type"),
         (None, "cannot be read: No such file or directory"),
     ],
@@ -206,13 +219,14 @@ def test_files_that_are_wrong(param: Run, tmp_path: Path, text: str | None, told
     [
         (["get", "/robot/arn", "speed"], "there is no node '/robot/arn' = help: did you mean '/robot/arm'?"),
         (["list", "/x"], "there is no node '/x' = help: see `ifgen node list`"),
+        (["get", "/robot/arn", "speed", "--timeout", "0"], "there is no node '/robot/arn'"),
         (["get", ARM, "sped"], "has no parameter 'sped' = help: did you mean 'speed'?"),
         (["get", ARM, "zzz"], "has no parameter 'zzz' = help: see `ifgen param list /robot/arm`"),
         (["get", ARM, "unset"], "the parameter 'unset' of '/robot/arm' has no value = help: it is declared"),
         (["describe", ARM, "speed", "zzz"], "has no parameter 'zzz'"),
         (["delete", ARM, "zzz"], "has no parameter 'zzz'"),
-        (["set", ARM, "speed", "a: b: c"], "the value of 'speed' is no YAML"),
-        (["set", ARM, "count", "99999999999999999999"], "of 'count' fits no parameter"),
+        (["set", ARM, "speed", "a: b: c"], "of 'speed' fits no parameter: this is a map"),
+        (["set", ARM, "count", "99999999999999999999"], "write a value such as 1, of 64 bits"),
     ],
 )
 def test_mistakes(param: Run, words: list[str], told: str) -> None:
@@ -244,7 +258,8 @@ def test_a_node_without_services(param: Run, monkeypatch: pytest.MonkeyPatch) ->
 def test_a_file_that_is_no_text(param: Run, tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_bytes(b"/a:\n  \xff")
     done = param("load", ARM, "a.yaml")
-    assert (done.code, done.err) == (1, "error: a.yaml is no text in UTF-8: invalid start byte at byte 6\n")
+    reason = 'unacceptable character #x00ff: invalid leading UTF-8 octet in "<byte string>", position 6'
+    assert (done.code, done.err) == (1, f"error: a.yaml: it is no YAML: {reason}\n")
 
 
 def test_a_node_that_answers_with_a_failure(param: Run, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -261,3 +276,72 @@ def test_a_node_that_answers_with_a_failure(param: Run, monkeypatch: pytest.Monk
         1,
         f"error: the node '{ARM}' has not answered on 'get_parameters': the server has gone\n",
     )
+
+
+KINDS: dict[str, list[Any]] = {
+    "bool": [True, False],
+    "int": [-(2**63), 2**63 - 1, 0],
+    "double": [1e5, -0.0, float("nan"), float("-inf"), 5e-324, 0.1],
+    "string": [
+        "1e5",
+        "nan",
+        "y",
+        "null",
+        "2026-01-31",
+        "12:30:45",
+        "0x1F",
+        "~",
+        "007",
+        "a\nb",
+        "é",
+        "",
+        "a: b",
+    ],
+}
+
+
+def test_every_value_comes_back(param: Run, robot: Node, tmp_path: Path) -> None:
+    """By dump and load, by `set` of the text in the dump, and in a node that starts with the file."""
+    values: dict[str, Any] = {f"{kind}s.all": many for kind, many in KINDS.items()}
+    values |= {f"{kind}s.v{index}": each for kind, many in KINDS.items() for index, each in enumerate(many)}
+    values |= {"some_bytes": [b"\0", b"\xff"], "bytes2": [b"y"]}
+    for name, value in values.items():
+        robot.declare_parameter(name, value, ParameterDescriptor(dynamic_typing=True))
+    for kind, type_ in (
+        ("no_numbers", Parameter.Type.DOUBLE_ARRAY),
+        ("no_texts", Parameter.Type.STRING_ARRAY),
+    ):
+        robot.declare_parameter(kind, Parameter(kind, type_, []).value)
+    names = [*values, "no_numbers", "no_texts"]
+
+    def held(node: Node, names: Iterable[str]) -> dict[str, str]:
+        found = {name: node.get_parameter(name).value for name in names}
+        return {name: repr(list(each) if isinstance(each, array) else each) for name, each in found.items()}
+
+    expected = held(robot, names)
+    file = tmp_path / "arm.yaml"
+    file.write_text(param("dump", ARM).out)
+
+    def spoil() -> None:
+        others = {name: [b"z"] if "bytes" in name else "other" for name in values}
+        robot.set_parameters([Parameter(name, value=each) for name, each in others.items()])
+
+    spoil()
+    assert param("load", ARM, file).code == 0
+    assert held(robot, names) == expected
+    spoil()
+    pairs = [
+        (name, parameter_yaml.value_text(value)) for name, value in values.items() if "bytes" not in name
+    ]
+    assert param("set", ARM, *(word for pair in pairs for word in pair)).err == ""
+    written = [name for name, _ in pairs]
+    assert held(robot, written) == {name: expected[name] for name in written}
+    context = rclpy.Context()
+    rclpy.init(args=["--ros-args", "--params-file", str(file)], context=context)
+    node = Node(
+        "arm", namespace="/robot", context=context, automatically_declare_parameters_from_overrides=True
+    )
+    started = held(node, written)
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    assert started == {name: expected[name] for name in written}

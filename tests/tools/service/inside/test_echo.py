@@ -39,6 +39,7 @@ def test_yaml(capsys: pytest.CaptureFixture[str]) -> None:
     assert out.startswith("info:\n  event_type: RE")
     assert "  client_gid: '<array type: uint8[16]>'\n  sequence_number: " in out
     assert out.count("\n---\n") == 2
+    assert "example_interfaces/srv/AddTwoInts_Request[1], length: " in out
 
 
 @pytest.mark.usefixtures("calls")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Iterator
 
 import pytest
@@ -106,6 +107,12 @@ def test_qos_that_cannot_match_names_the_policy(ifgen: Run, node: Node) -> None:
     ("words", "code", "expected"),
     [
         (["/sped"], 1, "error: there is no topic '/sped'\n  = help: did you mean '/speed'"),
+        (
+            ["/speed", "std_msgs/msg/String"],
+            1,
+            "error: the topic '/speed' has the type std_msgs/msg/Float64, not std_msgs/msg/String\n  = help: see",
+        ),
+        (["/speed", "--field", "data", "--field", "x"], 2, "error: --field can be given once, not 2 times"),
         (["/speed", "--field", "dat"], 1, "error: std_msgs/msg/Float64 has no field 'dat'\n"),
         (["/speed", "std_msgs/msg/Flot64"], 1, "error: there is no type 'std_msgs/msg/Flot64'\n"),
         (
@@ -124,6 +131,13 @@ def test_what_is_wrong_is_named(ifgen: Run, node: Node, words: list[str], code: 
     done = ifgen("topic", "echo", "--timeout", "5", *words)
     assert (done.code, done.out) == (code, "")
     assert done.err.startswith(expected)
+
+
+def test_another_type_comes_later(ifgen: Run, node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ifgen_tools.topic.listening._LOOK_EVERY", 0.01)
+    threading.Timer(0.1, lambda: node.create_publisher(Float64, "late", 1)).start()
+    done = ifgen("topic", "echo", "/late", "std_msgs/msg/String", "--timeout", "0.6")
+    assert done.err == "WARNING: /late is published as std_msgs/msg/Float64, not as std_msgs/msg/String\n"
 
 
 def test_two_types_on_a_topic(ifgen: Run, node: Node) -> None:

@@ -117,6 +117,11 @@ def test_delay_needs_a_header(ifgen: Run, node: Node) -> None:
     assert done.err == "error: std_msgs/msg/Float64 has no header, so '/speed' has no times to compare with\n"
 
 
+def test_the_bandwidth_of_even_messages() -> None:
+    """Ten messages of 100 B, one every 0.1 s, are 1 kB/s: the first begins the time."""
+    assert rates._bandwidth_text("/a", [100] * 11, 1.0, False).startswith("1.00 KB/s from 11 messages")
+
+
 @pytest.mark.slow
 def test_bandwidth_when_time_begins_anew(
     ifgen: Run, node: Node, ends: Callable[[int], None], monkeypatch: pytest.MonkeyPatch

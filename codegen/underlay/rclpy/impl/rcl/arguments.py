@@ -91,6 +91,12 @@ def rclpy_remove_ros_args(args: Iterable[str] | None) -> list[str]:
     return [] if args is None else parse_node_arguments(list(args)).unparsed
 
 
+def warn_of_unused(arguments: Arguments) -> None:
+    """Name on stderr the parameters that no node took."""
+    for sentence in arguments.parameters.unused():
+        _warn(sentence)
+
+
 def _warn(text: str) -> None:
     _log("WARN", text)
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import re
+import weakref
 
 from rmw_local.graph import Participant
 
 from rclpy.impl import program
 
-from .arguments import Arguments, parse_context_arguments
+from .arguments import Arguments, parse_context_arguments, warn_of_unused
 from .destroyable import Destroyable
 from .errors import RCLError
 
@@ -32,6 +33,8 @@ class Context(Destroyable):
         self.program = program.current()
         self.valid = True
         self.program.contexts.add(self)
+        if self.arguments.parameters:
+            weakref.finalize(self, warn_of_unused, self.arguments)  # at the end of the process at the latest
 
     def ok(self) -> bool:
         """Whether it was not shut down."""

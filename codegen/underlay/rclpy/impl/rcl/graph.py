@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from rmw_local.domain import Domain
 from rmw_local.endpoint import Endpoint
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 NamesAndTypes = list[tuple[str, list[str]]]
 _Pairs = Iterable[tuple[str, str]]
+
+_P = TypeVar("_P")  # a topic or a service
 
 _PUBLISHER, _SUBSCRIPTION = 1, 2
 _EMPTY, _INVALID = 1, 2  # numbers that rcl puts into its texts
@@ -271,35 +273,44 @@ def node_names(node: Node) -> list[tuple[str, str, str]]:
 
 def count_publishers(node: Node, topic_name: str) -> int:
     """Count the publishers of a full topic name; raises RCLError for a bad one."""
-    graph = _Snapshot(node, "Error in rcl_count_publishers")
-    _check(topic_name, "topic_name", graph)
-    return sum(writer.topic == topic_name for writer in graph.writers)
+    domain = _domain_of(node, "Error in rcl_count_publishers", topic_name, "topic_name")
+    return _count(domain, domain.topics, topic_name, lambda topic: topic.writers)
 
 
 def count_subscribers(node: Node, topic_name: str) -> int:
     """Count the subscriptions of a full topic name; raises RCLError for a bad one."""
-    graph = _Snapshot(node, "Error in rcl_count_subscribers")
-    _check(topic_name, "topic_name", graph)
-    return sum(reader.topic == topic_name for reader in graph.readers)
+    domain = _domain_of(node, "Error in rcl_count_subscribers", topic_name, "topic_name")
+    return _count(domain, domain.topics, topic_name, lambda topic: topic.readers)
 
 
 def count_clients(node: Node, service_name: str) -> int:
     """Count the clients of a full service name; raises RCLError for a bad one."""
-    graph = _Snapshot(node, "Error in rcl_count_clients")
-    _check(service_name, "service_name", graph)
-    return sum(client.name == service_name for client in graph.clients)
+    domain = _domain_of(node, "Error in rcl_count_clients", service_name, "service_name")
+    return _count(domain, domain.services, service_name, lambda service: service.clients)
 
 
 def count_services(node: Node, service_name: str) -> int:
     """Count the servers of a full service name; raises RCLError for a bad one."""
-    graph = _Snapshot(node, "Error in rcl_count_services")
-    _check(service_name, "service_name", graph)
-    return sum(server.name == service_name for server in graph.servers)
+    domain = _domain_of(node, "Error in rcl_count_services", service_name, "service_name")
+    return _count(domain, domain.services, service_name, lambda service: service.servers)
 
 
-def _check(name: str, argument: str, graph: _Snapshot) -> None:
+def _domain_of(node: Node, failure: str, name: str, argument: str) -> Domain:
+    """Return a node's domain, ready to look for a name there; raises RCLError."""
+    if not node.context.valid:
+        raise RCLError(f"{failure}: rcl node's context is invalid")
     if error := rclpy_get_validation_error_for_full_topic_name(name):
-        raise RCLError(f"{graph.failure}: {argument} argument is invalid: {error[0]}")
+        raise RCLError(f"{failure}: {argument} argument is invalid: {error[0]}")
+    domain: Domain = node.graph_node.participant.domain
+    domain.bury()
+    return domain
+
+
+def _count(domain: Domain, places: dict[str, _P], name: str, ends: Callable[[_P], Iterable[object]]) -> int:
+    """Count without a look at all other names: a program may wait for thousands of them, one by one."""
+    with domain.lock:
+        place = places.get(name)
+        return 0 if place is None else sum(not getattr(end, "stands_in", False) for end in ends(place))
 
 
 # Actions are known by their feedback topics.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
@@ -127,11 +127,17 @@ class Node(Destroyable):
     def get_parameters(self, pyparameter_cls: Callable[..., Any]) -> dict[str, Any]:
         """Return the overrides for this node by name, as instances of the given class."""
         full_name = self.graph_node.full_name
+        self.use_parameters(())
         return {
             name: pyparameter_cls(name, value=value)
             for arguments in reversed(self._arguments)
             for name, value in arguments.parameters.matching(full_name)
         }
+
+    def use_parameters(self, names: Iterable[str] | None) -> None:
+        """Note which overrides the node knows, so that the others can be named; None: all of them."""
+        for arguments in self._arguments:
+            arguments.parameters.use(self.graph_node.full_name, names)
 
     # The graph around it
 

@@ -8,104 +8,17 @@ it in that order, so a later pattern wins over an earlier one however specific t
 from __future__ import annotations
 
 import re
-import sys
-from collections.abc import Iterator
-from typing import Any, Final
+from collections.abc import Iterable, Iterator
+from typing import Final
+
+from ifgen_runtime.parameter_scalars import ParameterVariant, Value, read_scalar
 
 from .lexer import Lexeme, Lexer, RuleError
 from .names import rclpy_get_validation_error_for_namespace, rclpy_get_validation_error_for_node_name
 
-__all__ = ["ParameterOverrides", "ParameterVariant", "parse_override_rule", "read_scalar"]
+__all__ = ["ParameterOverrides", "parse_override_rule"]
 
-Scalar = bool | int | float | str
-Value = Scalar | list[Any] | None
-
-_TRUE = frozenset(["y", "Y", "yes", "Yes", "YES", "on", "On", "ON", "true", "True", "TRUE"])
-_FALSE = frozenset(["n", "N", "no", "No", "NO", "off", "Off", "OFF", "false", "False", "FALSE"])
-_INTEGER = re.compile(r"[+-]?(?:0[xX](?P<hex>[0-9a-fA-F]+)|0(?P<octal>[0-7]+)|[1-9][0-9]*|0)")
-_DECIMAL = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-_HEX_FLOAT = re.compile(r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?")
-_C_NOT_FINITE = re.compile(r"[+-]?(?:inf|infinity|nan|nan\(\w*\))", re.IGNORECASE)
-_YAML_NOT_FINITE = re.compile(r"[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
 _WILDCARDS: Final = ("*", "**")
-_INT64: Final = range(-(2**63), 2**63)
-
-
-def read_scalar(text: str) -> Scalar:
-    """The value of an unquoted YAML scalar: bool, int, float, else str. C's number syntax, not Python's."""
-    if text in _TRUE:
-        return True
-    if text in _FALSE:
-        return False
-    if found := _INTEGER.fullmatch(text):
-        number = _read_integer(text, found)
-        if number is not None and number in _INT64:
-            return number
-    return _read_float(text)
-
-
-def _read_integer(text: str, found: re.Match[str]) -> int | None:
-    if found["hex"]:
-        return int(text, 16)
-    if found["octal"]:
-        return -int(found["octal"], 8) if text[0] == "-" else int(found["octal"], 8)
-    return int(text) if len(text) <= 20 else None  # longer ones do not fit, and Python may refuse them
-
-
-def _read_float(text: str) -> float | str:
-    if _YAML_NOT_FINITE.fullmatch(text) or _C_NOT_FINITE.fullmatch(text):
-        return float(text.replace(".", "").partition("(")[0])
-    if _DECIMAL.fullmatch(text):
-        number = float(text)
-    elif _HEX_FLOAT.fullmatch(text):
-        try:
-            number = float.fromhex(text)
-        except OverflowError:
-            return text
-    else:
-        return text
-    # Out of a normal double's range C reports an error, and the text stays text.
-    is_zero = not re.search("[1-9a-fA-F]", re.split("[eEpP]", text.lower().removeprefix("0x"))[0])
-    in_range = sys.float_info.min <= abs(number) <= sys.float_info.max
-    return number if in_range or is_zero else text
-
-
-class ParameterVariant:
-    """The value of one parameter; one slot a type, as in the C structure.
-
-    A second value of another type does not evict the first: the reader takes the first filled slot.
-    """
-
-    __slots__ = ("_arrays", "_scalars")
-
-    _ORDER: Final = (bool, int, float, str)
-
-    def __init__(self) -> None:
-        self._scalars: dict[type, Scalar] = {}
-        self._arrays: dict[type, list[Any]] = {}
-
-    def set_scalar(self, value: Scalar) -> None:
-        """Fill the slot of the value's type."""
-        self._scalars[type(value)] = value
-
-    def start_array(self, value: Scalar) -> None:
-        """Begin the array of the value's type with this element."""
-        self._arrays[type(value)] = [value]
-
-    def append(self, value: Scalar) -> None:
-        """Add an element to the array of the value's type."""
-        self._arrays.setdefault(type(value), []).append(value)
-
-    def value(self) -> Value:
-        """The overrides that a node sees, in a separate list; None if nothing was ever set."""
-        for kind in self._ORDER:
-            if kind in self._scalars:
-                return self._scalars[kind]
-        for kind in self._ORDER:
-            if kind in self._arrays:
-                return list(self._arrays[kind])
-        return None
-
 
 Entry = dict[str, ParameterVariant]
 
@@ -115,6 +28,9 @@ class ParameterOverrides:
 
     def __init__(self) -> None:
         self._entries: dict[str, Entry] = {}
+        self._by_hand: set[tuple[str, str]] = set()  # pattern and name of each `-p`
+        self._used: dict[str, set[str]] = {}  # the names that nodes have declared, by pattern
+        self._nodes: set[str] = set()
 
     def __bool__(self) -> bool:
         return bool(self._entries)
@@ -131,6 +47,37 @@ class ParameterOverrides:
             if _matches(pattern, full_name):
                 for name, variant in entry.items():
                     yield name, variant.value()
+
+    def override(self, pattern: str, name: str) -> ParameterVariant:
+        """The parameter that `-p` names, created when missing. Raises RuleError for a bad pattern."""
+        self._by_hand.add((pattern, name))
+        return self.entry(pattern).setdefault(name, ParameterVariant())
+
+    def use(self, full_name: str, names: Iterable[str] | None) -> None:
+        """Note that a node is there, and has declared parameters; None stands for all of them."""
+        self._nodes.add(full_name)
+        for pattern, entry in self._entries.items():
+            if _matches(pattern, full_name):
+                self._used.setdefault(pattern, set()).update(entry if names is None else names)
+
+    def unused(self) -> Iterator[str]:
+        """A sentence for each override that no node took, if it was given for one node or with `-p`.
+
+        A file for several nodes is as it should be if one of them is here.
+        """
+        from difflib import get_close_matches  # only the end of a program needs it
+
+        exact = [pattern for pattern in self._entries if "*" not in pattern]
+        if self._nodes and exact and not any(pattern in self._used for pattern in exact):
+            nodes = ", ".join(sorted(self._nodes))
+            yield f"Parameters for {', '.join(exact)} were given, but there was no such node: only {nodes}"
+        for pattern, used in self._used.items():
+            for name in self._entries[pattern]:
+                is_meant = pattern in exact or (pattern, name) in self._by_hand
+                if is_meant and name not in used:
+                    near = get_close_matches(name, used, n=1, cutoff=0.5)
+                    advice = f": did you mean '{near[0]}'?" if near else ""
+                    yield f"The parameter '{name}' was given, but no node declared it{advice}"
 
 
 def _check_pattern(pattern: str) -> None:
@@ -168,14 +115,17 @@ def parse_override_rule(rule: str, overrides: ParameterOverrides) -> None:
     text = lexer.rest()
     if not text:
         raise RuleError("error not set")  # the C layer says no more than this
-    entry = overrides.entry("/**" if node is None else node)
+    variant = overrides.override("/**" if node is None else node, name)
     # Most values are a plain word or number: they need no YAML parser, whose import costs milliseconds.
     if re.fullmatch(r"[\w.+/]+", text, re.ASCII):
-        entry.setdefault(name, ParameterVariant()).set_scalar(read_scalar(text))
+        variant.set_scalar(read_scalar(text))
         return
-    from .parameter_files import read_value  # with a YAML parser
+    from ifgen_runtime import parameter_yaml  # with a YAML parser
 
-    read_value(text, entry.setdefault(name, ParameterVariant()))
+    try:
+        parameter_yaml.read_value(text, variant)
+    except parameter_yaml.ParameterYamlError as error:
+        raise RuleError(str(error)) from None
 
 
 def _parameter_name(lexer: Lexer) -> str:

@@ -17,7 +17,7 @@ import zenoh
 from zenoh import CongestionControl, Locality, SampleKind
 
 from rmw_local.notices import Repeated
-from rmw_local.transports.zenoh import attachments
+from rmw_local.transports.zenoh import attachments, tokens
 
 if TYPE_CHECKING:
     from rmw_local.transports.background import Background
@@ -132,7 +132,11 @@ class Calls:
     # Callbacks, on Zenoh's threads
 
     def _on_process(self, sample: zenoh.Sample) -> None:
-        process = str(sample.key_expr).rpartition("/")[2]
+        try:
+            process = tokens.session_id(str(sample.key_expr).rpartition("/")[2])
+        except ValueError as error:
+            self._malformed.add(str(error))
+            return
         if sample.kind == SampleKind.PUT and process != self._id:
             self._processes.add(process)
         elif process in self._processes:

@@ -41,6 +41,7 @@ from rmw_local.transports.seam import (
 )
 from rmw_local.transports.zenoh import attachments, receipts, services, statistics, tokens
 from rmw_local.transports.zenoh.calls import Calls
+from rmw_local.transports.zenoh.crowds import Crowds
 from rmw_local.transports.zenoh.keys import alive_key, data_key, receipts_key, settled_key, statistics_key
 from rmw_local.transports.zenoh.lending import Lending
 from rmw_local.transports.zenoh.presence import PATIENCE, Gate, Presence
@@ -81,6 +82,7 @@ class ZenohTransport:
         self._gate = Gate()
         self._background = Background()
         self._domain = domain
+        self._patterns = tokens.pattern(domain), *tokens.crowd_patterns(domain)
         self._configuration = configuration
         self._is_private = is_private
         self._questions: list[Questions] = []
@@ -94,15 +96,18 @@ class ZenohTransport:
             raise TransportError(f"Zenoh says: {reason(error)}") from None
         self._id = str(self._session.zid())
         self._liveliness = self._session.liveliness()
-        self._lending = Lending(self._session, self._gate, self._background, self._domain, self.malformed)
-        self._calls = Calls(self._session, self._gate, self._background, self._domain, self.malformed)
+        parts = self._session, self._gate, self._background, self._domain, self.malformed
+        self._lending = Lending(*parts, is_private=self._is_private)
+        self._calls = Calls(*parts)
+        self._crowds = Crowds(self._session, self._gate, self._domain, is_private=self._is_private)
         if self._is_private:
             self._calls.begin()
         self._followed: list[Any] = [
-            self._liveliness.declare_subscriber(
-                tokens.pattern(self._domain),
-                self._gate.callback(self._on_token, on_entity),
-                history=True,
+            *(
+                self._liveliness.declare_subscriber(
+                    pattern, self._gate.callback(self._on_token, on_entity), history=True
+                )
+                for pattern in self._patterns
             ),
             self._session.declare_subscriber(
                 alive_key(self._domain, "*"),
@@ -141,7 +146,8 @@ class ZenohTransport:
                 settled = self._tokens(settled_key(self._domain, "*"))
                 own = settled_key(self._domain, self._id)
                 if settled is not None and len({*settled} - {own}) >= peers:
-                    answers = self._tokens(tokens.pattern(self._domain))
+                    found = [self._tokens(pattern) for pattern in self._patterns]
+                    answers = None if None in found else [token for each in found for token in each or ()]
 
         self._gate.call(ask)
         if answers is None:
@@ -155,7 +161,7 @@ class ZenohTransport:
         replies = list(self._liveliness.get(pattern, channel, timeout=_PATIENCE))
         if time.monotonic() > end:
             return None
-        return [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
+        return [tokens.of_key(str(reply.ok.key_expr)) for reply in replies if reply.ok is not None]
 
     def settle(self) -> None:
         """Declare one more token: others learn of tokens in the order in which they were declared."""
@@ -208,7 +214,7 @@ class ZenohTransport:
                 self._session, key, cache=CacheConfig(_history(qos)), publisher_detection=True, **options
             )
         else:
-            declared = self._session.declare_publisher(key, **options)
+            declared = self._crowds.publisher(key, **options)
         token, gid = self._token(publisher)
         say_alive, ask = partial(self._say_alive, gid), partial(self._receipts, gid)
         publication = Publication(self._gate, token, gid, declared, say_alive, ask)
@@ -220,23 +226,23 @@ class ZenohTransport:
     def subscribe(self, subscription: Entity, on_sample: OnSample) -> Presence:
         """Declare a subscriber, for a transient local one also what asks for earlier messages."""
         qos, key = subscription.qos, self._key(subscription)
-        handler = self._gate.callback(self._on_sample, on_sample)
+        handler = partial(self._on_sample, on_sample)
         declared: Any
         if qos.durability == TRANSIENT_LOCAL:
             reliable = qos.reliability == RELIABLE
             declared = declare_advanced_subscriber(
                 self._session,
                 key,
-                handler,
+                self._gate.callback(handler),
                 allowed_origin=Locality.REMOTE,
                 history=HistoryConfig(detect_late_publishers=True, max_samples=_history(qos)),
                 recovery=RecoveryConfig(periodic_queries=None, heartbeat=True) if reliable else None,
                 subscriber_detection=True,
             )
         else:
-            declared = self._session.declare_subscriber(key, handler, allowed_origin=Locality.REMOTE)
+            declared = self._crowds.subscriber(key, handler)
         token = self._written(subscription)
-        listening = self._lending.listen(tokens.gid_of(token), on_sample)
+        listening = self._lending.listen(tokens.gid_of(token), key, on_sample)
         return Presence(self._gate, *self._declared(token), declared, listening)
 
     def ask(self, client: Entity, on_reply: OnReply, on_over: OnOver) -> Asking:
@@ -293,7 +299,7 @@ class ZenohTransport:
         return tokens.write(self._domain, self._id, entity)
 
     def _declared(self, token: str) -> tuple[zenoh.LivelinessToken, bytes]:
-        return self._liveliness.declare_token(token), tokens.gid_of(token)
+        return self._crowds.token(token), tokens.gid_of(token)
 
     def _say_alive(self, gid: bytes) -> None:
         self._gate.call(lambda: self._session.put(alive_key(self._domain, gid.hex()), b""))
@@ -301,7 +307,7 @@ class ZenohTransport:
     # Callbacks, on Zenoh's threads
 
     def _on_token(self, on_entity: OnEntity, sample: zenoh.Sample) -> None:
-        text = str(sample.key_expr)
+        text = tokens.of_key(str(sample.key_expr))
         if tokens.session_of(text) == self._id:
             return
         try:
@@ -348,7 +354,10 @@ class ZenohTransport:
             return
         known = self._unpacked(attached)
         if known is not None:
-            on_sample(sample.payload.to_bytes(), *known)
+            data = sample.payload.to_bytes()
+            if len(data) >= self._lending.threshold:
+                self._lending.keep()
+            on_sample(data, *known)
 
     def _on_request(self, on_request: OnRequest, serving: Serving, key: str, query: zenoh.Query) -> None:
         known = self._unpacked(query.attachment)

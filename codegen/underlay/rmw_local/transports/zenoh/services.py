@@ -11,6 +11,7 @@ from typing import Any, Final, Protocol
 import zenoh
 from zenoh import ConsolidationMode, Locality, QueryTarget
 
+from rmw_local.notices import printable
 from rmw_local.transports.background import Background
 from rmw_local.transports.seam import Ask, OnOver
 from rmw_local.transports.zenoh import attachments
@@ -29,6 +30,7 @@ _MOST_BYTES: Final = 2**28
 """The size of those requests in all [bytes], unless it is a single one."""
 _GRACE: Final = 0.5
 """Seconds that an answer may take which was sent before its server went."""
+_LONGEST_REASON: Final = 100  # bytes
 _RESULT_SERVICE: Final = "/_action/get_result"
 _NO_END: Final = 100 * 365 * 86_400.0  # [s]
 
@@ -137,7 +139,8 @@ class _Query:
         if error is None:
             self._questions.on_reply(reply)
         else:
-            self._reason = f"Zenoh says: {error.payload.to_string()[:100]}"
+            said = error.payload.to_bytes()[:_LONGEST_REASON].decode(errors="replace")
+            self._reason = printable(f"Zenoh says: {said}")  # or whoever has answered
 
     def end(self) -> None:
         self._questions.end(self._number, self._reason)

@@ -19,6 +19,8 @@ from rmw_local.transports.zenoh import qos_text
 from rmw_local.transports.zenoh.keys import NO_HASH, dds_type, hash_of, ros_type
 
 _PREFIX: Final = "@ros2_lv"
+_CROWD: Final = "@ifgen_lv"
+_BRANCHES, _TWIGS = 8, 64
 _STANDS_IN: Final = "ifgen_adapts"
 _REFUSES: Final = "ifgen_refuses"
 _LONGEST: Final = 2048  # characters; names of ROS have at most 255
@@ -33,6 +35,27 @@ _NODE: Final = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 def pattern(domain: int) -> str:
     """The key expression of all tokens of a domain."""
     return f"{_PREFIX}/{domain}/**"
+
+
+def crowd_patterns(domain: int) -> list[str]:
+    """The key expressions of those tokens of a domain that are declared below other keys.
+
+    They are several, since Zenoh looks through all that matches one whenever there is more of it.
+    """
+    return [f"{_CROWD}/{domain}/{branch}/**" for branch in range(_BRANCHES)]
+
+
+def in_crowd(token: str) -> str:
+    """The key of a token among very many: Zenoh compares what has the same parts before it."""
+    _, domain, rest = token.split("/", 2)
+    gid = gid_of(token)
+    return f"{_CROWD}/{domain}/{gid[0] % _BRANCHES}/{gid[1] % _TWIGS}/{rest}"
+
+
+def of_key(key: str) -> str:
+    """The token that is declared with a key."""
+    parts = key.split("/", 4)
+    return f"{_PREFIX}/{parts[1]}/{parts[4]}" if parts[0] == _CROWD and len(parts) == 5 else key
 
 
 def write(domain: int, session: str, entity: Entity) -> str:
