@@ -1,4 +1,4 @@
-"""Generate: everything bundled, sets of 100 to 10,000 interfaces, and rosidl's own generator beside ours.
+"""Generate: everything bundled, sets of 100 to 20,000 interfaces, and rosidl's own generator beside ours.
 
     python benchmarks/generate.py [--largest N] [--rounds N]
 
@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 ROOT = Path(__file__).resolve().parent.parent
-SIZES = (100, 1_000, 10_000)
+SIZES = (100, 1_000, 10_000, 20_000)
 PER_PACKAGE = 50
 ROSIDL_MESSAGES = 40
 ROSIDL = """
@@ -49,10 +49,11 @@ with contextlib.redirect_stdout(io.StringIO()):
 
 
 class Cost(NamedTuple):
-    """Seconds that a process took."""
+    """Seconds that a process took, and the most memory of any process so far [MB]."""
 
     cpu: float
     wall: float
+    peak: float
 
 
 def main() -> None:
@@ -88,13 +89,15 @@ def bundled(folder: Path, rounds: int) -> None:
 
 def sizes(folder: Path, counts: list[int]) -> None:
     """Cost for each interface as their number grows by tens."""
-    print("| interfaces | cold CPU [s] | each [ms] | unchanged CPU [s] | each [ms] |\n|---|---|---|---|---|")
+    print("| interfaces | cold CPU [s] | each [ms] | peak [MB] | unchanged CPU [s] | each [ms] |")
+    print("|---|---|---|---|---|---|")
     for count in counts:
         source, out, cache = (folder / f"{kind}{count}" for kind in ("many", "many_out", "many_cache"))
         synthesise(source, count)
         cold = ifgen(cache, "generate", source, "-o", out)
         unchanged = ifgen(cache, "generate", source, "-o", out)
-        figures = [cold.cpu, cold.cpu / count * 1000, unchanged.cpu, unchanged.cpu / count * 1000]
+        figures = [cold.cpu, cold.cpu / count * 1000, cold.peak]
+        figures += [unchanged.cpu, unchanged.cpu / count * 1000]
         print(f"| {count:,} | " + " | ".join(f"{figure:.2f}" for figure in figures) + " |")
 
 
@@ -165,7 +168,8 @@ def measured(command: list[str], code: int = 0, **environment: str) -> Cost:
     done = subprocess.run(command, env={**os.environ, **environment}, stdout=subprocess.DEVNULL, check=False)
     assert done.returncode == code, command
     wall, after = time.perf_counter() - started, resource.getrusage(resource.RUSAGE_CHILDREN)
-    return Cost(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, wall)
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Cost(cpu, wall, after.ru_maxrss / 1000)
 
 
 def median(costs: list[Cost], which: Literal["cpu", "wall"]) -> float:

@@ -234,7 +234,13 @@ def test_other_bad_places_are_one_error_each(ifgen: Run, git: Git, monkeypatch: 
     git("init", "--quiet", "empty")
     write(Path("empty/demo_msgs/msg/State.msg"), STATE)
     assert "the repository has no commit yet" in ifgen("breaking", "empty", "--against", "v1").err
-    assert ifgen("breaking", "empty", "--against", "HEAD").code == 0, "before the first commit all is new"
+    done = ifgen("breaking", "empty", "--against", "HEAD")
+    assert (done.code, "the repository has no commit yet" in done.err) == (2, True)
+    Path("nothing").mkdir()
+    write(Path("other.lock"), "version 1\nend\n")
+    for reference in ("nothing", "other.lock"):
+        done = ifgen("breaking", "demo_msgs", "--against", reference)
+        assert (done.code, "there is nothing to compare" in done.err) == (2, True), done
     monkeypatch.setenv("PATH", "")
     done = ifgen("breaking", "demo_msgs", "--against", "HEAD")
     assert (done.code, done.err.splitlines()[0]) == (2, "error[no-git]: git is not installed")

@@ -100,3 +100,8 @@ def test_what_is_not_there_is_one_error(ifgen: Run, words: tuple[str, ...], rule
     assert done.out == ""
     assert done.err.startswith(f"error[{rule}]: ")
     assert done.err.count("error[") == 1
+
+
+def test_a_revision_alone_is_said_to_be_one(ifgen: Run, git: Git) -> None:
+    done = ifgen("diff", "std_msgs/msg/String", "HEAD")
+    assert (done.code, "write the type after it: `HEAD:" in done.err) == (2, True), done

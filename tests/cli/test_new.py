@@ -15,7 +15,7 @@ from .conftest import Run
 def test_everything_from_nothing(ifgen: Run, tmp_path: Path) -> None:
     """A new package of interfaces and one of a node pass the check at once, and find each other."""
     for kind in ("msg/Obstacle", "srv/Move", "action/Walk"):
-        done = ifgen("new", "interface", f"my_msgs/{kind}")
+        done = ifgen("new", "interface", f"my_msgs/{kind}", "--colcon")
         assert done.code == 0
         assert f"wrote interfaces/my_msgs/{kind}.{kind.partition('/')[0]}\n" in done.out
         assert done.out.endswith("next: `ifgen generate interfaces/my_msgs`\n")
@@ -57,6 +57,26 @@ def test_a_package_of_interfaces_is_one_that_colcon_builds(ifgen: Run, tmp_path:
     assert "Unit m." in (tmp_path / "generated/other_msgs/msg/_a.py").read_text(), "of the constant"
 
 
+def test_files_of_colcon_are_written_where_colcon_is(
+    ifgen: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def files(package: str) -> list[str]:
+        return sorted(path.name for path in (tmp_path / package).glob("*.*"))
+
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    ifgen("new", "interface", "a_msgs/msg/A", "--in", "plain")
+    assert files("plain/a_msgs") == []
+    ifgen("new", "interface", "b_msgs/msg/A", "--in", "plain", "--colcon")
+    ifgen("new", "interface", "c_msgs/msg/A", "--in", "plain")
+    (tmp_path / "ws/install").mkdir(parents=True)
+    (tmp_path / "ws/install/.colcon_install_layout").touch()
+    ifgen("new", "interface", "a_msgs/msg/A", "--in", "ws/src")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", "/opt/ros/jazzy")
+    ifgen("new", "interface", "a_msgs/msg/A", "--in", "sourced")
+    for package in ("plain/b_msgs", "plain/c_msgs", "ws/src/a_msgs", "sourced/a_msgs"):
+        assert files(package) == ["CMakeLists.txt", "package.xml"], package
+
+
 def test_where_it_goes(ifgen: Run, tmp_path: Path) -> None:
     """A new file goes to the first configured path or to DIR, and to its package if that exists."""
     (tmp_path / "pyproject.toml").write_text('[tool.ifgen]\npaths = ["src/ros"]\n')
@@ -64,7 +84,7 @@ def test_where_it_goes(ifgen: Run, tmp_path: Path) -> None:
     assert ifgen("new", "package", "demo").out.startswith("wrote src/ros/demo/package.xml")
     assert ifgen("new", "package", "demo", "--in", "other").code == 0
     (tmp_path / "src/ros/deep").mkdir()
-    ifgen("new", "interface", "deep_msgs/msg/A", "--in", "src/ros/deep")
+    ifgen("new", "interface", "deep_msgs/msg/A", "--in", "src/ros/deep", "--colcon")
     assert ifgen("new", "node", "deep_msgs/n").out.startswith("wrote src/ros/deep/deep_msgs/nodl/n.nodl.yaml")
 
 
@@ -108,7 +128,7 @@ def test_nothing_is_overwritten(ifgen: Run, tmp_path: Path) -> None:
 
 def test_a_new_interface_that_is_not_listed_is_told(ifgen: Run, tmp_path: Path) -> None:
     """The CMakeLists.txt of a new package lists all files; other packages' may not."""
-    assert "left out" not in ifgen("new", "interface", "demo_msgs/msg/A").out
+    assert "left out" not in ifgen("new", "interface", "demo_msgs/msg/A", "--colcon").out
     assert "left out" not in ifgen("new", "interface", "demo_msgs/msg/B").out
     assert ifgen("check", "interfaces").out == "2 interfaces in 1 package: no mistakes\n"
     cmake = tmp_path / "interfaces/demo_msgs/CMakeLists.txt"

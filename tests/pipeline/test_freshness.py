@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -34,10 +35,10 @@ def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     names: list[str] = []
     original = rendering.render
 
-    def spy(*arguments: Any) -> tuple[OutputPackage, ...]:
-        packages = original(*arguments)
-        names.extend(package.name for package in packages)
-        return packages
+    def spy(*arguments: Any) -> Iterator[OutputPackage]:
+        for package in original(*arguments):
+            names.append(package.name)
+            yield package
 
     monkeypatch.setattr(rendering, "render", spy)
     return names

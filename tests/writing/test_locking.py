@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import shutil
 import stat
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -80,6 +82,30 @@ def test_runs_take_turns(system: Fake, tmp_path: Path, monkeypatch: pytest.Monke
     assert order == ["first False", "second False"]
     assert list(out.iterdir()) == [], "nothing is left in a folder that is committed"
     assert not locking.is_free(out)
+
+
+def test_a_run_that_fails_does_not_take_the_folder_from_one_that_waits(tmp_path: Path) -> None:
+    """The first run makes the folder, and removes it again because nothing came."""
+    out = tmp_path / "deep" / "out"
+    for _ in range(10):
+        waits = threading.Event()
+        written: list[Path] = []
+
+        def second() -> None:
+            waits.set()  # noqa: B023 - the thread ends before the next turn
+            with transaction.locked(out):
+                written.extend(write.write([OutputPackage("a_msgs", {"a.py": "a"})], out, "test").written)  # noqa: B023
+
+        thread = threading.Thread(target=second)
+        with suppress(KeyboardInterrupt), transaction.locked(out):
+            thread.start()
+            waits.wait(10)
+            thread.join(0.02)
+            raise KeyboardInterrupt
+        thread.join(10)
+        assert [path.name for path in written] == ["a.py"]
+        assert (out / "a_msgs/a.py").read_text() == "a"
+        shutil.rmtree(tmp_path / "deep")
 
 
 @pytest.mark.parametrize("system", [on_windows, on_a_network_drive, nowhere])

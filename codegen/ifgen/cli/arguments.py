@@ -8,9 +8,27 @@ from typing import Any
 
 import click
 
-EXISTING = click.Path(exists=True, path_type=Path)
-EXISTING_FILE = click.Path(exists=True, dir_okay=False, path_type=Path)
-FOLDER = click.Path(exists=True, file_okay=False, path_type=Path)
+from ifgen.reading.storage import near_paths
+
+
+class _Existing(click.Path):
+    """A path that exists. If it does not, the error names those beside it that look alike."""
+
+    def __init__(self, *, file_okay: bool = True, dir_okay: bool = True) -> None:
+        super().__init__(exists=True, file_okay=file_okay, dir_okay=dir_okay, path_type=Path)
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        try:
+            return super().convert(value, param, ctx)
+        except click.BadParameter as error:
+            if not (near := near_paths(value)):
+                raise
+            self.fail(f"{error.message} Did you mean {' or '.join(map(repr, near))}?", param, ctx)
+
+
+EXISTING = _Existing()
+EXISTING_FILE = _Existing(dir_okay=False)
+FOLDER = _Existing(file_okay=False)
 OUTPUT_FOLDER = click.Path(file_okay=False, path_type=Path)
 OUTPUT_FILE = click.Path(dir_okay=False, path_type=Path)
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import gc
 import sys
-from collections.abc import Generator
+from collections import Counter
+from collections.abc import Generator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -19,13 +21,15 @@ from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import with_deps as with_deps_option
 from ifgen.config.settings import Settings, settle
-from ifgen.diagnostics import any_errors, shown_path
+from ifgen.diagnostics import Diagnostic, any_errors, shown_path
 from ifgen.writing.interruption import terminable
 
 if TYPE_CHECKING:
     from ifgen.pipeline.stages import Generated
-    from ifgen.pipeline.values import Condition
+    from ifgen.pipeline.values import Condition, LeftOut
     from ifgen.reading.search_path import WithDeps
+
+_UNDECLARED: Final = "undeclared-dependency"
 
 # Late imports: the stages take longest to load, and a mistake in an option is told without them.
 
@@ -47,6 +51,8 @@ if TYPE_CHECKING:
 @click.option("--watch", is_flag=True, help="Keep running, and generate again on every change.")
 @click.option("--locked", is_flag=True, help="Fail if an interface differs from ifgen.lock.")
 @click.option("--templates", metavar="DIR", type=FOLDER, help="Your own templates, which replace ifgen's.")
+@click.option("--exclude", metavar="PATTERN", multiple=True, help="Leave out a package, or demo_msgs/msg/*.")
+@click.option("--keep-going", is_flag=True, help="Generate what is right although other files are wrong.")
 @click.option("--isolated", is_flag=True, help="Read no pyproject.toml, so run none of the code it names.")
 @strict_option
 @quiet_option
@@ -61,6 +67,8 @@ def generate(
     watch: bool,
     locked: bool,
     templates: Path | None,
+    exclude: tuple[str, ...],
+    keep_going: bool,
     isolated: bool,
     strict: bool | None,
     quiet: bool,
@@ -75,15 +83,19 @@ def generate(
     """
 
     def settings() -> Settings:
-        chosen = settle(paths, output, include, with_deps, templates, tests, strict, isolated=isolated)
+        options = (paths, output, include, with_deps, templates, tests, strict)
+        chosen = settle(*options, isolated=isolated, exclude=exclude)
         return chosen.with_paths().trusted()
 
-    run = partial(_check_freshness if check else write, quiet=quiet, locked=locked)
+    if keep_going and locked:
+        message = "--keep-going cannot be used with --locked, which is about all interfaces"
+        raise click.UsageError(message, click.get_current_context())
+    run = partial(_check_freshness if check else write, quiet=quiet, locked=locked, keep_going=keep_going)
     if watch and (check or exit_non_zero_on_change):
         option = "--check" if check else "--exit-non-zero-on-change"
         raise click.UsageError(f"{option} cannot be used with --watch", click.get_current_context())
     if exit_non_zero_on_change and not check:
-        run = partial(write, quiet=quiet, locked=locked, changes_fail=True)
+        run = partial(run, changes_fail=True)
     with terminable():
         if not watch:
             with without_garbage_collection():
@@ -105,7 +117,12 @@ def without_garbage_collection() -> Generator[None]:
 
 
 def write(
-    settings: Settings, *, quiet: bool = False, locked: bool = False, changes_fail: bool = False
+    settings: Settings,
+    *,
+    quiet: bool = False,
+    locked: bool = False,
+    keep_going: bool = False,
+    changes_fail: bool = False,
 ) -> int:
     """Generate, print what changed, and return the exit code."""
     from ifgen.pipeline import stages
@@ -120,15 +137,40 @@ def write(
                 templates=settings.custom,
                 progress=progress,
                 condition=_condition(locked, settings),
+                exclude=settings.exclude,
+                keep_going=keep_going,
             )
     except KeyboardInterrupt as stop:
         stop.args = stop.args or ("no file was changed",)
         raise
-    told = settings.policy.told(done.diagnostics)
+    told = _in_short(settings.policy.told(done.diagnostics))
     terminal.print_diagnostics(told, stderr=True)
+    _say_what_is_left_out(done.left_out)
     if not quiet:
         _report(done, settings.output)
     return int(any_errors(told) or (changes_fail and bool(done.written or done.removed)))
+
+
+def _in_short(found: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+    """The diagnostics, with one for all undeclared dependencies of a package; `ifgen check` has each."""
+    counts = Counter(each.message.partition(" ")[0] for each in found if each.rule == _UNDECLARED)
+    short: list[Diagnostic] = []
+    for each in found:
+        package = each.message.partition(" ")[0]
+        count = counts[package] if each.rule == _UNDECLARED else 1
+        if count > 1:
+            message = f"{package} uses {count} packages without declaring them"
+            advice = "`ifgen check` shows each, and what to add to package.xml and CMakeLists.txt"
+            short.append(replace(each, message=message, primary=None, secondary=(), help=advice))
+            counts[package] = 0
+        elif count:
+            short.append(each)
+    return short
+
+
+def _say_what_is_left_out(left_out: Sequence[LeftOut]) -> None:
+    for left in left_out:
+        print(f"left out: {left.name}: {left.reason}", file=sys.stderr)
 
 
 def _report(done: Generated, output: Path) -> None:
@@ -159,7 +201,9 @@ def _condition(locked: bool, settings: Settings) -> Condition | None:
     return condition(settings)
 
 
-def _check_freshness(settings: Settings, *, quiet: bool = False, locked: bool = False) -> int:
+def _check_freshness(
+    settings: Settings, *, quiet: bool = False, locked: bool = False, keep_going: bool = False
+) -> int:
     from ifgen.pipeline import stages
 
     with terminal.progress_bar("checking") as progress:
@@ -171,9 +215,12 @@ def _check_freshness(settings: Settings, *, quiet: bool = False, locked: bool = 
             templates=settings.custom,
             progress=progress,
             condition=_condition(locked, settings),
+            exclude=settings.exclude,
+            keep_going=keep_going,
         )
-    told = settings.policy.told(found.diagnostics)
+    told = _in_short(settings.policy.told(found.diagnostics))
     terminal.print_diagnostics(told, stderr=True)
+    _say_what_is_left_out(found.left_out)
     drifts = found.drifts
     if not drifts:
         if not quiet:

@@ -26,7 +26,7 @@ from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import transport as transport_option
 from ifgen.config.settings import settle
-from ifgen.diagnostics import printable
+from ifgen.diagnostics import Diagnostic, printable, shown_path
 from ifgen.writing.interruption import Terminated, held, terminable
 
 if TYPE_CHECKING:
@@ -51,6 +51,10 @@ def _dispatch(arguments: Sequence[str] | None) -> int:
     if os.environ.get(completion.VARIABLE):  # a shell asks what could come next
         return completion.complete(commands)
     words = list(sys.argv[1:] if arguments is None else arguments)
+    if words[:1] == ["help"]:
+        words = [*words[1:], "--help"]
+    elif words == ["-v"]:
+        words = ["--version"]
     try:
         # Not `commands.main`, which has its own way with Ctrl-C.
         with commands.make_context("ifgen", words) as context:
@@ -175,12 +179,21 @@ def commands() -> None:
 @format_option
 @strict_option
 @quiet_option
+@click.option("--fix", is_flag=True, help="Fix what follows from a finding alone, then check again.")
+@click.option("--diff", is_flag=True, help="Show what --fix would change, and write nothing.")
 def check(
-    paths: tuple[Path, ...], include: tuple[Path, ...], format_: str, strict: bool | None, quiet: bool
+    paths: tuple[Path, ...],
+    include: tuple[Path, ...],
+    format_: str,
+    strict: bool | None,
+    quiet: bool,
+    fix: bool,
+    diff: bool,
 ) -> int:
-    """Look for mistakes, and write nothing.
+    """Look for mistakes, and write nothing, except with --fix.
 
-    Checks interfaces, node descriptions, and your own node modules.
+    Checks interfaces, node descriptions, and your own node modules. --fix adds dependencies to package.xml
+    and CMakeLists.txt, and writes `pkg/Type` for `pkg::Type`.
 
     PATH is a package, a folder of packages, or one .msg, .srv, .action, .idl or .nodl.yaml file. The default
     is the paths in [tool.ifgen] of pyproject.toml.
@@ -188,14 +201,37 @@ def check(
     from ifgen.pipeline.inspection import inspect
 
     settings = settle(paths, None, include, strict=strict).with_paths()
-    findings = inspect(
-        *settings.paths,
-        include=settings.include,
-        output=settings.output,
-        ros_distro=settings.custom.ros_distro,
-    )
-    told = settings.policy.told(findings.diagnostics)
+    while True:
+        findings = inspect(
+            *settings.paths,
+            include=settings.include,
+            output=settings.output,
+            ros_distro=settings.custom.ros_distro,
+            exclude=settings.exclude,
+        )
+        told = settings.policy.told(findings.diagnostics)
+        if diff or not fix or not _fix(told):
+            break
+    if diff:
+        from ifgen.pipeline.fixing import fixed
+
+        terminal.print_changes((path, *texts) for path, texts in fixed(told).items())
     return terminal.print_findings(told, format_, "" if quiet else f"{_looked_at(findings)}: no mistakes")
+
+
+def _fix(told: Sequence[Diagnostic]) -> bool:
+    """Fix what can be fixed of what was found; whether a file has changed."""
+    from ifgen.pipeline.fixing import fixed
+    from ifgen.writing import transaction
+
+    texts = fixed(told)
+    if texts:
+        top = Path(os.path.commonpath([path.absolute().parent for path in texts]))
+        with terminable():
+            transaction.apply([(path.absolute(), after.encode()) for path, (_, after) in texts.items()], top)
+        for path in texts:
+            print(f"fixed {shown_path(path)}", file=sys.stderr)
+    return bool(texts)
 
 
 @commands.command(epilog="Example: ifgen show geometry_msgs/msg/Pose")

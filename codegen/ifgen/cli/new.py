@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from contextlib import suppress
 from pathlib import Path
@@ -52,7 +53,8 @@ def package(name: str, folder: Path | None) -> int:
 @new.command(epilog="Example: ifgen new interface demo_msgs/msg/Goal")
 @click.argument("name", metavar="PACKAGE/FOLDER/NAME")
 @_in
-def interface(name: str, folder: Path | None) -> int:
+@click.option("--colcon", is_flag=True, help="With package.xml and CMakeLists.txt, as in a colcon workspace.")
+def interface(name: str, folder: Path | None, colcon: bool) -> int:
     """Write a first message, service or action.
 
     FOLDER is msg, srv or action: demo_msgs/msg/Pose. Makes the package if it does not exist.
@@ -69,7 +71,8 @@ def interface(name: str, folder: Path | None) -> int:
         raise _invalid(f"`{own}` is not a valid name", f"{hint}A capital letter, then letters and digits")
     root = _root(package_name, folder)
     path = root / kind / f"{own}.{kind}"
-    package = {} if (root / "package.xml").exists() else _interface_package(root, package_name)
+    is_wanted = not (root / "package.xml").exists() and (colcon or _is_in_workspace(root))
+    package = _interface_package(root, package_name) if is_wanted else {}
     _write({**package, path: skeletons.INTERFACES[kind]})
     if _is_left_out(path):
         click.echo(
@@ -128,6 +131,16 @@ def _root(package_name: str, folder: Path | None) -> Path:
     except InputError:  # there is none yet, or others are wrong
         found = []
     return found[0] if found else base / package_name
+
+
+def _is_in_workspace(root: Path) -> bool:
+    """Whether ROS 2 is sourced, colcon has built in a folder above, or a package beside has CMake."""
+    built = (parent / "install" / ".colcon_install_layout" for parent in root.absolute().parents)
+    return (
+        bool(os.environ.get("AMENT_PREFIX_PATH"))
+        or any(path.exists() for path in built)
+        or any(root.absolute().parent.glob("*/CMakeLists.txt"))
+    )
 
 
 def _is_left_out(path: Path) -> bool:

@@ -29,6 +29,7 @@ class Configuration:
     paths: tuple[Path, ...]
     output: Path
     include: tuple[Path, ...]
+    exclude: tuple[str, ...]
     with_deps: WithDeps
     tests: bool
     templates: Path | None
@@ -52,6 +53,7 @@ class Configuration:
             paths=tuple(map(Path, said["paths"])),
             output=Path(said["output"]),
             include=tuple(map(Path, said["include"])),
+            exclude=tuple(said["exclude"]),
             with_deps=said["with_deps"],
             tests=bool(said["tests"]),
             templates=Path(templates) if templates else None,

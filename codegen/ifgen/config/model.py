@@ -50,6 +50,9 @@ class Config(BaseModel):
     paths: tuple[Path, ...] = Field(default=(), description="what to generate: PATH...")
     output: Path = Field(default=AnyPath("generated"), description="where to: -o")
     include: tuple[Path, ...] = Field(default=(), description="where dependencies are: -I")
+    exclude: tuple[str, ...] = Field(
+        default=(), description="patterns of packages, interfaces and nodes to leave out: --exclude"
+    )
     with_deps: bool | Literal["own"] = Field(
         default=False, description="generate the dependencies too, or your own ones: --with-deps"
     )

@@ -33,6 +33,7 @@ class Settings:
     policy: Policy = field(default_factory=Policy)
     breaking: str = "source"
     adapters: Path = Path("adapters")
+    exclude: tuple[str, ...] = ()
 
     def with_paths(self) -> Settings:
         """The same settings, for a command that needs paths. Raises UsageError if there are none."""
@@ -75,6 +76,7 @@ def settle(  # noqa: PLR0913 - one for each option
     strict: bool | None = None,
     *,
     isolated: bool = False,
+    exclude: Sequence[str] = (),
 ) -> Settings:
     """Combine the options given (those that are not None or empty) with the configuration that holds here.
 
@@ -88,6 +90,7 @@ def settle(  # noqa: PLR0913 - one for each option
         partial = bool(paths and found.paths)
         paths = paths or found.existing("paths", found.paths)
         include = (*(include or ()), *found.existing("include", found.include))
+        exclude = (*exclude, *(() if partial else found.exclude))
         output = output or found.output
         with_deps = found.with_deps if with_deps is None else with_deps
         configured = found.existing("templates", (found.templates,)) if found.templates is not None else ()
@@ -119,6 +122,7 @@ def settle(  # noqa: PLR0913 - one for each option
         policy,
         "source" if found is None else found.breaking,
         Path("adapters") if found is None else found.adapters,
+        tuple(exclude),
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from ifgen.definition.explain import did_you_mean
 from ifgen.definition.interfaces import Field, Message
-from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
+from ifgen.definition.types import COLLECTIONS, NamespacedType
 from ifgen.diagnostics import Diagnostic, Label, Span
 from ifgen.reading import storage
 from ifgen.reading.interface_list import FILE
@@ -24,7 +24,7 @@ def references(message: Message) -> Iterator[tuple[Field, NamespacedType]]:
     """The fields of a message that hold other messages, and those messages' types."""
     for field in message.fields:
         type_ = field.type
-        if isinstance(type_, Array | BoundedSequence | UnboundedSequence):
+        if isinstance(type_, COLLECTIONS):
             type_ = type_.value_type
         if isinstance(type_, NamespacedType):
             yield field, type_

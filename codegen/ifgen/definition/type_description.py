@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final, TypeAlias
 
 from ifgen.definition.interfaces import Action, Field, Interface, Message, Registry, Scalar, Service
 from ifgen.definition.names import PLACEHOLDER
 from ifgen.definition.type_ids import Kind, TypeId
 from ifgen.definition.types import (
+    COLLECTIONS,
     Array,
     BasicType,
     BoundedSequence,
@@ -89,7 +90,7 @@ class TypeHashes:
         self._registry = registry
         self._texts: dict[str, str] = {}
         self._hashes: dict[str, str] = {}
-        self._referenced: dict[str, list[Described]] = {}
+        self._direct: dict[str, tuple[tuple[str, Described], ...]] = {}
 
     def of(self, interface: Described) -> str:
         """The type hash of a message, service or action."""
@@ -100,10 +101,13 @@ class TypeHashes:
 
     def referenced(self, interface: Described) -> list[Described]:
         """Everything that an interface refers to, directly or not, by name."""
+        return _closure(interface, self._references)
+
+    def _references(self, interface: Described) -> tuple[tuple[str, Described], ...]:
         name = interface.type_name
-        if name not in self._referenced:
-            self._referenced[name] = referenced_types(interface, self._registry)
-        return self._referenced[name]
+        if name not in self._direct:
+            self._direct[name] = tuple(_references(interface, self._registry))
+        return self._direct[name]
 
     def _hash(self, interface: Described) -> str:
         referenced = ", ".join(map(self._text, self.referenced(interface)))
@@ -125,10 +129,16 @@ class TypeHashes:
 
 def referenced_types(interface: Described, registry: Registry) -> list[Described]:
     """Everything that an interface refers to, directly or not, by name."""
+    return _closure(interface, lambda each: _references(each, registry))
+
+
+def _closure(
+    interface: Described, references: Callable[[Described], Iterable[tuple[str, Described]]]
+) -> list[Described]:
     known: dict[str, Described] = {}
     pending: list[Described] = [interface]
     while pending:
-        for name, referenced in _references(pending.pop(), registry):
+        for name, referenced in references(pending.pop()):
             if name not in known:
                 known[name] = referenced
                 pending.append(referenced)
@@ -222,7 +232,7 @@ def _element_type(type_: ValueType) -> tuple[int, int, str]:
 
 
 def _value_type(type_: FieldType) -> ValueType:
-    if isinstance(type_, Array | BoundedSequence | UnboundedSequence):
+    if isinstance(type_, COLLECTIONS):
         return type_.value_type
     return type_
 

@@ -8,7 +8,7 @@ A `char` of an .idl file stays one.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 BasicTypeName = Literal[
     "boolean",
@@ -100,4 +100,7 @@ class UnboundedSequence:
 
 
 CollectionType: TypeAlias = Array | BoundedSequence | UnboundedSequence
+COLLECTIONS: Final = (Array, BoundedSequence, UnboundedSequence)
+"""The same classes for `isinstance`, where `A | B` would make a union at each call."""
+
 FieldType: TypeAlias = ValueType | CollectionType

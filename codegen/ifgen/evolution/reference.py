@@ -26,18 +26,27 @@ def earlier(name: str, paths: Sequence[Path], include: Sequence[Path], base: Pat
     """The version that `name` stands for, of what is at `paths` in the `new` one.
 
     `base` is the folder of the project, which the paths are relative to. What cannot be understood is left
-    out, with its mistakes. Raises UsageError if there is no such version.
+    out, with its mistakes. Raises UsageError if there is no such version, or if it is a folder or a lock file
+    with nothing to compare. A commit may be older than everything here, which then breaks nothing.
     """
     folder = Path(name)
     if os.path.isfile(name):  # noqa: PTH113 - any text will do, also one that no file can be called
-        return _in_lock(folder, new)
+        return _not_empty(name, _in_lock(folder, new))
     if os.path.isdir(name):  # noqa: PTH112
         if _looks_like_a_revision(name) and revisions.is_revision(paths[0], name):
             message = f"'{name}' is a folder here, and a revision too"
             advice = f"write ./{name} for the folder, or refs/heads/{name} or refs/tags/{name}"
             raise UsageError([Diagnostic("unknown-revision", message, help=advice)])
-        return _in_folder(folder, paths, include, base, new)
+        return _not_empty(name, _in_folder(folder, paths, include, base, new))
     return _of_revision(name, paths, include, new)
+
+
+def _not_empty(name: str, found: Version) -> Version:
+    if not found.packages and not found.mistakes:
+        message = f"'{shorten(name)}' has none of these interfaces and nodes: there is nothing to compare"
+        advice = "name a revision, or a folder or a lock file with earlier versions of these packages"
+        raise UsageError([Diagnostic("unknown-revision", message, help=advice)])
+    return found
 
 
 def _looks_like_a_revision(name: str) -> bool:

@@ -46,7 +46,14 @@ def select(text: str, paths: Sequence[Path], include: Sequence[Path]) -> Selecti
         return _of_lock(text, None) if _is_lock(text) else _at(text, Path(text), include)
     reference, type_name = split(text)
     if reference is None:
-        return _of_search(text, type_name, _search(paths, include))
+        try:
+            return _of_search(text, type_name, _search(paths, include))
+        except InputError:
+            if revisions.is_revision(paths[0] if paths else Path(), text):
+                message = f"'{shorten(text)}' is a revision, which is no type by itself"
+                help = f"write the type after it: `{shorten(text)}:demo_msgs/msg/Name`"
+                raise UsageError([Diagnostic("unknown-type", message, help=help)]) from None
+            raise
     if _is_lock(reference):
         return _of_lock(reference, type_name)
     if os.path.isdir(reference):  # noqa: PTH112

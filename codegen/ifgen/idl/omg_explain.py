@@ -76,7 +76,8 @@ def _no_token(place: Place) -> Diagnostic | None:
         return _wrong(
             "a string is not closed", label, "a long string can consist of several, one after the other"
         )
-    if place.found.start == place.last().end and place.found.text[:1].isalpha():
+    is_glued = place.found.start == place.last().end and place.last().text[-1:].isidentifier()
+    if is_glued and place.found.text[:1].isalpha():
         # A name stops at the first letter that IDL does not know.
         span = Span(place.source, place.last().start, place.found.end)
         name = shorten(place.source.text[span.start : span.end])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,6 +35,7 @@ def inspect(
     include: Sequence[Path | str] = (),
     output: Path | None = None,
     ros_distro: str | None = None,
+    exclude: Sequence[str] = (),
 ) -> Findings:
     """The diagnostics about the interfaces and nodes at `paths`, and about what they need of other packages.
 
@@ -43,8 +45,13 @@ def inspect(
     from ifgen.definition.problems import one_for_each_cause
     from ifgen.definition.resolve import resolve
 
+    excluded: tuple[str, ...] = ()
     try:
         packages = find_packages(paths)
+        if exclude:
+            from ifgen.pipeline.leaving_out import without_excluded
+
+            packages, excluded = without_excluded(packages, exclude)
         search = SearchPath(packages, include)
     except InputError as error:
         return Findings(error.diagnostics)
@@ -64,6 +71,10 @@ def inspect(
             nodes = sum(len(package.nodes) for package in loaded.packages)
         except InputError as error:
             found += error.diagnostics
+    if excluded:
+        from ifgen.pipeline.leaving_out import mistakes
+
+        found = mistakes(found, packages, excluded)
     # A node's package has its interfaces looked at twice.
     by_severity = sorted(
         one_for_each_cause(dict.fromkeys(judged(found, ros_distro))),
@@ -98,7 +109,7 @@ def inspect_templates(
     except InputError:
         return found
     try:
-        render(plan(job, custom), custom)
+        deque(render(plan(job, custom), custom), maxlen=0)
     except InputError as error:
         found += error.diagnostics
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from ifgen.config.customization import Customization
 from ifgen.generator_py.artifact import Artifact, OutputFile
@@ -11,23 +11,19 @@ from ifgen.pipeline.job import PlannedPackage
 from ifgen.writing.write import OutputPackage
 
 
-def render(planned: Iterable[PlannedPackage], custom: Customization) -> tuple[OutputPackage, ...]:
+def render(planned: Iterable[PlannedPackage], custom: Customization) -> Iterator[OutputPackage]:
     """The packages with the texts of their files. Raises InputError for a template that is wrong."""
     templates: Templates | None = None  # the user's filters are loaded only if they are needed
-    rendered: list[OutputPackage] = []
     for package in planned:
         templates = templates or Templates(custom)
-        rendered.append(
-            OutputPackage(
-                package.name,
-                _texts(package.files, templates),
-                package.interfaces,
-                package.source,
-                _texts(package.beside, templates),
-                _texts(package.once, templates),
-            )
+        yield OutputPackage(
+            package.name,
+            _texts(package.files, templates),
+            package.interfaces,
+            package.source,
+            _texts(package.beside, templates),
+            _texts(package.once, templates),
         )
-    return tuple(rendered)
 
 
 def _texts(files: Mapping[str, Artifact | OutputFile], templates: Templates) -> dict[str, str]:

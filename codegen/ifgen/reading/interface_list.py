@@ -7,6 +7,7 @@ kind of a file, not its folder: `srvs/Pause.srv` is the type `srv/Pause`.
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -30,6 +31,7 @@ INDEX: Final = Path("ament_index", "resource_index", "rosidl_interfaces")
 PARTS: Final = ("Request", "Response", "Event", "Goal", "Result", "Feedback")
 """The suffixes that ROS adds to the name of a service or an action to name its parts."""
 
+_CALL: Final = re.compile(rf"^[^#\n]*?\b(?P<name>{GENERATE})\s*\(", re.MULTILINE | re.IGNORECASE)
 _FOLLOWED: Final = ("include", "add_subdirectory")
 _SHOWN: Final = 5
 
@@ -186,11 +188,14 @@ def _never_called(source: Source, lies_there: Sequence[Path]) -> InterfaceList |
     """A package that generates nothing by CMake: all that lies there, with a warning if that is something."""
     if not lies_there:
         return None
-    warning = Diagnostic(
-        "no-interface-list",
-        f"{FILE} never calls {GENERATE}: colcon builds no interfaces of this package",
-        Label(Span(source, 0, 0)),
-        help=f"ifgen takes all files in msg, srv and action. Call {GENERATE}(${{PROJECT_NAME}} FILES...)",
-        severity="warning",
-    )
+    taken = "ifgen takes all files in msg, srv and action"
+    if (call := _CALL.search(source.text)) is not None:
+        message = f"{FILE} does not reach {GENERATE} by default: colcon builds no interfaces of this package"
+        label = Label(Span(source, call.start("name"), call.end("name")), "not reached")
+        advice = f"{taken}. If colcon should build them, look at the conditions before the call"
+    else:
+        message = f"{FILE} never calls {GENERATE}: colcon builds no interfaces of this package"
+        label = Label(Span(source, 0, 0))
+        advice = f"{taken}. Call {GENERATE}(${{PROJECT_NAME}} FILES...)"
+    warning = Diagnostic("no-interface-list", message, label, help=advice, severity="warning")
     return InterfaceList(tuple(lies_there), (warning,), is_whole=False)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import sysconfig
 from collections.abc import Mapping, Set
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -29,6 +31,7 @@ NODE_EXTENSIONS: Final = (".nodl.json", ".nodl.yaml", ".nodl.yml")
 IDL: Final = ".idl"
 """The extension of interfaces in OMG IDL, of all three kinds."""
 
+_MODULE: Final = re.compile(rf"^\s*module\s+({'|'.join(FOLDERS)})\b", re.MULTILINE)
 _ADAPTED: Final = b"// generated from rosidl_adapter/"
 
 
@@ -93,7 +96,8 @@ class PackageFiles:
     """A package with interfaces, descriptions of nodes or both, and the files of it that were asked for.
 
     `root` is its folder; `xml` is its package.xml and `listed` its own list of interfaces, where it has one.
-    A package that stands for single files has `partial` set: it can find its other files too.
+    A package that stands for single files has `partial` set: it can find its other files too, except those
+    `left_out`, by folder and name.
     """
 
     name: str
@@ -103,6 +107,7 @@ class PackageFiles:
     xml: PackageXml | None = field(default=None, compare=False, repr=False)
     nodes: tuple[NodeFile, ...] = ()
     listed: InterfaceList | None = field(default=None, compare=False, repr=False)
+    left_out: frozenset[tuple[str, str]] = frozenset()
 
     @property
     def has_interfaces(self) -> bool:
@@ -118,7 +123,7 @@ class PackageFiles:
     def _on_disk(self) -> Mapping[tuple[str, str], InterfaceFile]:
         known = {(file.folder, file.name): file for file in contents(self.root).files} if self.partial else {}
         known.update(((file.folder, file.name), file) for file in self.files)
-        return known
+        return {key: file for key, file in known.items() if key not in self.left_out}
 
     def interface(self, folder: str, name: str) -> InterfaceFile | None:
         """The file of an interface; None if there is none."""
@@ -190,8 +195,14 @@ def installed_files(root: Path) -> tuple[InterfaceFile, ...]:
 
 
 def folder_of(path: Path) -> str:
-    """The folder that a listed file counts as if in, which its extension says."""
-    return path.parent.name if path.suffix == IDL else path.suffix[1:]
+    """The folder that a listed file counts as if in: its extension says it, or a module in an .idl file."""
+    if path.suffix != IDL:
+        return path.suffix[1:]
+    if path.parent.name not in FOLDERS:
+        with suppress(InputError):
+            found = _MODULE.search(read_source(path).text)
+            return found[1] if found else path.parent.name
+    return path.parent.name
 
 
 def _files_below(root: Path) -> tuple[InterfaceFile, ...]:

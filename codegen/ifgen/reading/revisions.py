@@ -97,7 +97,7 @@ def revision_of(place: Path, name: str) -> Revision:
     lines = top.stdout.decode(errors="surrogateescape").split("\n")
     root, as_given = lines[0], os.path.normpath(Path(folder, lines[1]).absolute())
     commit = _commit(root, name)
-    objects, missing = _objects_of(root, commit) if commit else ({}, ())
+    objects, missing = _objects_of(root, commit)
     found = Revision(name, tuple(dict.fromkeys((as_given, os.path.normpath(root)))), missing, objects)
     found.fetch()
     return found
@@ -144,9 +144,7 @@ def _existing(place: Path) -> Path:
 
 
 def _commit(root: str, name: str) -> str:
-    """The commit of this name; empty for HEAD before the first one. Raises UsageError if there is none."""
-    if name == "HEAD" and _has_no_commit(root):
-        return ""
+    """The commit of this name. Raises UsageError if there is none."""
     if name and not name.startswith("-") and "\0" not in name:
         found = _git(root, *_verify(name))
         if found.returncode == 0:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from copy import copy
 from functools import cached_property
 from pathlib import Path
 from typing import Final, Literal
@@ -53,6 +54,16 @@ class SearchPath:
         if name not in self._known:
             self._known[name] = self._look_for(name)
         return self._known[name]
+
+    def knowing(self, packages: Iterable[PackageFiles]) -> SearchPath:
+        """The same with these packages in the place of those of their names."""
+        search = copy(self)
+        search._known = {**self._known, **{package.name: package for package in packages}}
+        return search
+
+    def found(self) -> list[PackageFiles]:
+        """The packages that were asked for and found so far."""
+        return [package for package in self._known.values() if package is not None]
 
     def comes_along(self, name: str, with_deps: WithDeps) -> bool:
         """Whether a dependency is to be generated too."""

@@ -251,5 +251,17 @@ def _roots(snapshots: tuple[Snapshot, ...]) -> Iterator[tuple[Snapshot, str]]:
             yield snapshot, root
 
 
+def near_paths(path: str | Path) -> list[str]:
+    """The paths in the folder of one that does not exist which look most like it."""
+    missing = Path(path)
+    try:
+        names = [] if os.path.lexists(missing) else [entry.name for entry in missing.parent.iterdir()]
+    except (OSError, ValueError):
+        return []
+    from difflib import get_close_matches  # of use only where something is wrong
+
+    return [str(missing.with_name(name)) for name in get_close_matches(missing.name, names, n=3)]
+
+
 def _missing(path: Path) -> OSError:
     return FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))

@@ -14,6 +14,8 @@ from typing import Literal
 
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
+from ifgen.reading.listed_file import EXTENSIONS
+from ifgen.reading.storage import near_paths
 from ifgen.running import alone, elsewhere, lockstep, processes
 from ifgen.running.activation import ActivationError, folder_around, is_node_package, put_on_path
 from ifgen.running.ending import tell
@@ -58,6 +60,10 @@ def _without_package(program: list[str], generated: Path) -> list[str]:
         raise UsageError([Diagnostic("no-program", "there is no program to run", help=advice)])
     first, *others = program
     if first == "-m" or Path(first).is_file():
+        if first.endswith(EXTENSIONS) or ".nodl." in first:
+            message = f"'{first}' describes an interface or a node: it is no program"
+            advice = f"`ifgen generate {first}` makes Python of it"
+            raise UsageError([Diagnostic("no-program", message, help=advice)])
         return program
     if first.startswith("-"):
         hint = _meant_option(first) + "`ifgen run --help` lists them"
@@ -66,10 +72,17 @@ def _without_package(program: list[str], generated: Path) -> list[str]:
 
     package = packages.find(first, generated) if re.fullmatch(r"[\w-]+", first) else None
     if package is None:
+        if Path(first).is_dir():
+            programs = ", ".join(sorted(path.name for path in Path(first).glob("*.py")))
+            message = f"'{first}' is a folder: name a program in it"
+            advice = f"it has {programs}" if programs else "it has no Python file"
+            raise UsageError([Diagnostic("no-program", message, help=advice)])
         advice = "to run a module, write `-m MODULE`; to run a node of a package, `PACKAGE NODE`"
         if others and re.fullmatch(r"[\w-]+", first):
             help = packages.missing(first, generated).help
             raise UsageError([Diagnostic("no-program", f"there is no file or package '{first}'", help=help)])
+        if near := near_paths(first):
+            advice = f"did you mean {' or '.join(near)}? If not: {advice}"
         raise UsageError([Diagnostic("no-program", f"there is no file '{first}'", help=advice)])
     if not others:
         message = f"'{first}' is a package: name one of its nodes, too"

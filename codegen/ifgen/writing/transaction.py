@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
 import time
 from collections.abc import Callable, Generator, Iterable, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import TypeAlias
@@ -18,31 +19,72 @@ Change: TypeAlias = tuple[Path, bytes | None]
 """A file and its new content; None removes it."""
 
 _STAGE = ".ifgen-tmp-"
+_ATTEMPTS = 100
 _FORGOTTEN = 3600.0
 """The age in seconds of a leftover stage, if it is unknown whether a run is at work."""
 
 
-def apply(changes: Sequence[Change], directory: Path) -> None:
-    """Make the changes, in order, to files below `directory`.
+def apply(changes: Iterable[Change], directory: Path) -> None:
+    """Make the changes, in order, to files below `directory`, as a `Stage` does."""
+    with staging(directory) as stage:
+        stage.apply([(path, None if data is None else stage.put(data)) for path, data in changes])
 
-    New contents are on the disk before the first file moves, and each file changes in one step: a reader sees
-    the old or the new one. Raises OSError (disk full, no permission); then, as after Ctrl-C, every file is as
-    before.
-    """
-    _clear(left_over(directory, alone=False))
-    stage = directory / Path(tempfile.mkdtemp(prefix=_STAGE, dir=directory)).name  # relative if that is
-    try:
-        staged = [(_stage(stage / f"new{i}", data), path) for i, (path, data) in enumerate(changes)]
+
+class Stage:
+    """New contents of files of a folder, on the disk beside them until they replace them all together."""
+
+    def __init__(self, directory: Path) -> None:
+        self._directory = directory
+        self._folder: Path | None = None
+        self._count = 0
+
+    def put(self, data: bytes) -> Path:
+        """Keep a new content. Raises OSError (disk full, no permission)."""
+        self._count += 1
+        place = self._made() / f"new{self._count}"
+        try:
+            place.write_bytes(data)
+        except OSError as error:  # a full disk has no name by itself
+            error.filename = error.filename or str(self._directory)
+            raise
+        return place
+
+    def apply(self, changes: Sequence[tuple[Path, Path | None]]) -> None:
+        """Replace files, in order, by contents that were put here; None removes a file.
+
+        Each file changes in one step: a reader sees the old or the new one. Raises OSError; then, as after
+        Ctrl-C, every file is as before.
+        """
         with _undone_on_failure() as undo:
-            for i, (new, path) in enumerate(staged):
+            for i, (path, new) in enumerate(changes):
                 _make_folder(path.parent, undo)
-                _remember(path, stage / f"old{i}", undo)
+                _remember(path, self._made() / f"old{i}", undo)
                 if new is None:
                     path.unlink()
                 else:
                     new.replace(path)
+
+    def clear(self) -> None:
+        """Remove what is left."""
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _made(self) -> Path:
+        if self._folder is None:
+            _clear(left_over(self._directory, alone=False))
+            made = tempfile.mkdtemp(prefix=_STAGE, dir=self._directory)
+            self._folder = self._directory / Path(made).name  # relative if that is
+        return self._folder
+
+
+@contextmanager
+def staging(directory: Path) -> Generator[Stage]:
+    """A stage in a folder, which is gone after the block."""
+    stage = Stage(directory)
+    try:
+        yield stage
     finally:
-        shutil.rmtree(stage, ignore_errors=True)
+        stage.clear()
 
 
 @contextmanager
@@ -51,16 +93,38 @@ def locked(directory: Path) -> Generator[None]:
 
     Remove the leftovers of killed runs.
     """
+    with ExitStack() as held:
+        alone = _locked_at_last(directory, held)
+        _clear(left_over(directory, alone=alone))
+        yield
+
+
+def _locked_at_last(directory: Path, held: ExitStack) -> bool:
+    """Make and lock a folder; again if another run, which made it too, removes it because nothing came."""
+    for _ in range(_ATTEMPTS):
+        with ExitStack() as attempt, suppress(FileNotFoundError):
+            alone = _entered(directory, attempt)
+            held.push(attempt.pop_all())
+            return alone
+    return _entered(directory, held)
+
+
+def _entered(directory: Path, held: ExitStack) -> bool:
+    """Make a folder if need be, and lock it. Raises FileNotFoundError if it is gone once it is locked."""
     made = [folder for folder in (directory, *directory.parents) if not folder.exists()]
     directory.mkdir(parents=True, exist_ok=True)
-    try:
-        with locking.exclusive(directory) as alone:
-            _clear(left_over(directory, alone=alone))
-            yield
-    finally:
-        with suppress(OSError):
-            for folder in made:
-                folder.rmdir()
+    before = directory.stat()
+    alone = held.enter_context(locking.exclusive(directory))
+    held.callback(_remove_empty, made)  # while it is locked, so that nobody has begun to work in it
+    if not os.path.samestat(before, directory.stat()):
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(directory))
+    return alone
+
+
+def _remove_empty(folders: Sequence[Path]) -> None:
+    with suppress(OSError):
+        for folder in folders:
+            folder.rmdir()
 
 
 def left_over(directory: Path, *, alone: bool) -> list[Path]:
@@ -89,17 +153,6 @@ def _undone_on_failure() -> Generator[list[Callable[[], object]]]:
             with suppress(OSError):
                 step()
         raise
-
-
-def _stage(place: Path, data: bytes | None) -> Path | None:
-    if data is None:
-        return None
-    try:
-        place.write_bytes(data)
-    except OSError as error:  # a full disk has no name by itself
-        error.filename = error.filename or str(place.parent.parent)
-        raise
-    return place
 
 
 def _make_folder(folder: Path, undo: list[Callable[[], object]]) -> None:

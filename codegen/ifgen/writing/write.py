@@ -7,11 +7,12 @@ changes all of them or none.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from importlib.util import cache_from_source
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from ifgen.diagnostics import Diagnostic, InputError, shown_path
 from ifgen.reading import manifest
@@ -24,6 +25,9 @@ ROOT = "."
 
 EDITED = ".ifgen-edited"
 """The folder in the output folder for edited files that were generated again; git ignores it."""
+
+Kept = TypeVar("Kept")
+"""The form in which a plan keeps a new content: the bytes, or the path of a file that has them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,13 +78,13 @@ class Drift:
 
 
 @dataclass(frozen=True, slots=True)
-class _Plan:
+class _Plan(Generic[Kept]):
     """The changes to make in one package folder, planned before any is made."""
 
     folder: Path
     old: Manifest
     new: Manifest
-    changed: Mapping[Path, bytes]
+    changed: Mapping[Path, Kept]
     unchanged: tuple[Path, ...]
     stale: tuple[Path, ...]
     kept: tuple[Path, ...]
@@ -94,11 +98,29 @@ def write(packages: Iterable[OutputPackage], directory: Path, generator: str) ->
     the way is not ours or lies outside `directory`, and OSError (disk full, no permission). In either case
     every file stays as it was.
     """
-    plans = _plan_all(packages, directory, generator)
+    with prepared(packages, directory, generator) as finish:
+        return finish()
+
+
+@contextmanager
+def prepared(
+    packages: Iterable[OutputPackage], directory: Path, generator: str
+) -> Generator[Callable[[], Written]]:
+    """The last step of `write`, which changes the files; until then their new contents are beside them.
+
+    One package at a time is in memory, so `packages` may be rendered meanwhile. Raises as `write` does.
+    """
+    with transaction.staging(directory) as stage:
+        plans = _plan_all(packages, directory, generator, stage.put)
+        yield lambda: _apply(plans, directory, stage)
+
+
+def _apply(plans: list[_Plan[Path]], directory: Path, stage: transaction.Stage) -> Written:
     edited = {path: data for plan in plans for path, data in plan.edited.items()}
-    changes = [*_set_aside(edited, directory), *(change for plan in plans for change in _changes(plan))]
+    aside = ((path, stage.put(data)) for path, data in _set_aside(edited, directory))
+    changes = [*aside, *(change for plan in plans for change in _changes(plan, stage))]
     if changes:
-        transaction.apply(changes, directory)
+        stage.apply(changes)
     for plan in plans:
         _tidy(plan)
     return Written(
@@ -115,8 +137,9 @@ def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ..
 
     Writes nothing, and raises as `write` does.
     """
+    plans = _plan_all(packages, directory, "", lambda data: data)
     drifts: list[Drift] = []
-    for plan in _plan_all(packages, directory, ""):
+    for plan in plans:
         drifts.extend(Drift(path, _text(path), data.decode()) for path, data in plan.changed.items())
         drifts.extend(Drift(path, _text(path), None) for path in (*plan.stale, *plan.kept))
     left_over = transaction.left_over(directory, alone=locking.is_free(directory))
@@ -156,12 +179,14 @@ def files_of(folder: Path, directory: Path, record: Manifest) -> dict[Path, str]
     return inside | {directory / name: of_content for name, of_content in record.beside.items()}
 
 
-def _plan_all(packages: Iterable[OutputPackage], directory: Path, generator: str) -> list[_Plan]:
-    plans: list[_Plan] = []
+def _plan_all(
+    packages: Iterable[OutputPackage], directory: Path, generator: str, keep: Callable[[bytes], Kept]
+) -> list[_Plan[Kept]]:
+    plans: list[_Plan[Kept]] = []
     problems: list[Diagnostic] = []
     for package in packages:
         try:
-            plans.append(_plan(package, directory, generator))
+            plans.append(_plan(package, directory, generator, keep))
         except InputError as error:
             problems.extend(error.diagnostics)
     if problems:
@@ -169,14 +194,16 @@ def _plan_all(packages: Iterable[OutputPackage], directory: Path, generator: str
     return plans
 
 
-def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
+def _plan(
+    package: OutputPackage, directory: Path, generator: str, keep: Callable[[bytes], Kept]
+) -> _Plan[Kept]:
     folder = directory / package.name
     old = _old_manifest(folder)
     texts = {folder / name: text for name, text in package.files.items()}
     texts |= {directory / name: text for name, text in package.beside.items()}
     once = {folder / name: text for name, text in package.once.items()}
     problems = list(_outside(folder, directory, [*texts, *once]))
-    changed: dict[Path, bytes] = {}
+    changed: dict[Path, Kept] = {}
     edited: dict[Path, bytes] = {}
     unchanged: list[Path] = []
     digests: dict[Path, str] = {}
@@ -190,7 +217,7 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
         elif path not in ours and os.path.lexists(path):
             problems.append(_foreign(path))
         else:
-            changed[path] = data
+            changed[path] = keep(data)
             if found is not None and not _is_generated(found, (ours[path], digests[path])):
                 edited[path] = found
     if problems:
@@ -199,7 +226,7 @@ def _plan(package: OutputPackage, directory: Path, generator: str) -> _Plan:
         if os.path.lexists(path):
             ours.pop(path, None)  # an earlier ifgen may have taken it for its own
         else:
-            changed[path] = text.encode()
+            changed[path] = keep(text.encode())
     stale, kept = _no_longer_generated(ours, digests)
     new = Manifest(
         generator,
@@ -226,7 +253,7 @@ def _is_generated(data: bytes, digests: tuple[str, ...]) -> bool:
     return any(manifest.digest(each) in digests for each in (data, data.replace(b"\r\n", b"\n")))
 
 
-def _set_aside(edited: Mapping[Path, bytes], directory: Path) -> Iterator[transaction.Change]:
+def _set_aside(edited: Mapping[Path, bytes], directory: Path) -> Iterator[tuple[Path, bytes]]:
     if edited:
         yield directory / EDITED / ".gitignore", b"*\n"
     for path, data in edited.items():
@@ -266,7 +293,7 @@ def _foreign(path: Path) -> Diagnostic:
     )
 
 
-def _changes(plan: _Plan) -> Iterator[transaction.Change]:
+def _changes(plan: _Plan[Path], stage: transaction.Stage) -> Iterator[tuple[Path, Path | None]]:
     """In an order that survives being killed half-way: at any time a manifest knows every file of ours.
 
     Until the end it has the old digests, so a file that has not been reached is not mistaken for an edited
@@ -279,7 +306,7 @@ def _changes(plan: _Plan) -> Iterator[transaction.Change]:
         beside={**plan.new.beside, **plan.old.beside},
     )
     if plan.changed and both != plan.old:
-        yield record, both.to_text().encode()
+        yield record, stage.put(both.to_text().encode())
     yield from plan.changed.items()
     for path in plan.stale:
         yield path, None
@@ -287,23 +314,24 @@ def _changes(plan: _Plan) -> Iterator[transaction.Change]:
         if record.exists():
             yield record, None
     elif plan.new != (both if plan.changed else plan.old):
-        yield record, plan.new.to_text().encode()
+        yield record, stage.put(plan.new.to_text().encode())
 
 
-def _tidy(plan: _Plan) -> None:
+def _tidy(plan: _Plan[Path]) -> None:
     """After files changed or went: their bytecode, then the folders that hold nothing any more.
 
     Python knows bytecode by the second and the size of its module, which two versions may share.
     """
+    modules: dict[Path, set[str]] = {}
     for path in (*plan.changed, *plan.stale):
-        # Beside it, where others may run Python, and where this environment's Python keeps it.
-        for place in {
-            path.absolute().parent / "__pycache__",
-            Path(cache_from_source(path.absolute())).parent,
-        }:
-            for bytecode in place.glob(f"{path.stem}.*.pyc"):
-                with suppress(OSError):
-                    bytecode.unlink()
+        modules.setdefault(path.parent.absolute(), set()).add(path.stem)
+    for folder, stems in modules.items():
+        # Beside them, where others may run Python, and where this environment's Python keeps it.
+        for place in {folder / "__pycache__", Path(cache_from_source(folder / "_.py")).parent}:
+            for bytecode in place.glob("*.pyc"):
+                if bytecode.name.partition(".")[0] in stems:
+                    with suppress(OSError):
+                        bytecode.unlink()
     for folder in sorted({path.parent for path in plan.stale} | {plan.folder}, reverse=True):
         for empty in (folder / "__pycache__", folder):
             with suppress(OSError):

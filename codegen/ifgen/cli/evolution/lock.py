@@ -56,7 +56,11 @@ def lock(
 
     settings = settle(paths, None, include, with_deps).with_paths()
     registries = stages.registries(
-        *settings.paths, output=settings.output, include=settings.include, with_deps=settings.with_deps
+        *settings.paths,
+        output=settings.output,
+        include=settings.include,
+        with_deps=settings.with_deps,
+        exclude=settings.exclude,
     )
     path, text = _path(settings), lock_text.text(registries)
     if check:

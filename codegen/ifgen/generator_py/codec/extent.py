@@ -60,9 +60,13 @@ class Extents:
 
     def of(self, message: Message) -> Extent:
         """The extent of a message."""
+        known = self._known.get(message.type_name)
+        if known is not None:
+            return known
         pending = [message]  # a stack of our own, since chains of messages may be long
         while pending:
-            held = {type_.type_name for _, type_ in references(pending[-1])} - self._known.keys()
+            names = {type_.type_name for _, type_ in references(pending[-1])}
+            held = [name for name in names if name not in self._known]
             if held:
                 pending += map(self.registry.message, held)
             else:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import count
+from typing import Final
 
 from ifgen.definition import types
 from ifgen.definition.interfaces import Field, Message
@@ -28,6 +29,8 @@ from ifgen.generator_py.codec.program import (
     Values,
 )
 from ifgen.generator_py.names import slot_name
+
+_ITEMS: Final = (Enter, Value, Array, Blank)
 
 
 def plan(message: Message, extents: Extents) -> Program:
@@ -96,7 +99,7 @@ def _in_runs(steps: Iterable[Item | Instruction]) -> tuple[Instruction, ...]:
     found: list[Instruction] = []
     items: list[Item] = []
     for step in steps:
-        if isinstance(step, Enter | Value | Array | Blank):
+        if isinstance(step, _ITEMS):
             items.append(step)
             continue
         if items:

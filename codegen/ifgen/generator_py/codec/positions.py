@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import assert_never
+from typing import Final, assert_never
 
 from ifgen.generator_py.codec.alignment import Alignment
 from ifgen.generator_py.codec.program import (
@@ -26,19 +26,21 @@ from ifgen.generator_py.codec.program import (
 
 COUNT_SIZE = 4
 """Bytes of a count or of the length of a string, and their alignment."""
+_SPACES: Final = {name: (number.size, number.size) for name, number in NUMBERS.items()}
 
 
 def space_of(item: Item) -> tuple[int, int]:
     """The alignment and the size of an item of a run."""
     match item:
+        case Value():
+            return _SPACES[item.type]
         case Enter():
             return 1, 0
         case Blank():
             return 1, 1
-        case Value(type=type_):
-            return NUMBERS[type_].size, NUMBERS[type_].size
-        case Array(type=type_, size=size):
-            return NUMBERS[type_].size, NUMBERS[type_].size * size
+        case Array():
+            size, _ = _SPACES[item.type]
+            return size, size * item.size
         case _:
             assert_never(item)
 

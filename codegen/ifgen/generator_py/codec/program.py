@@ -15,13 +15,16 @@ The instructions are a closed sum, and each rendering matches all of them:
   a message under its number. A `Run` begins with the number of its rows, so that one check of the remaining
   space covers all of them. A `Repeat` begins with the number of rows of its body, which follow it.
 * The check of payloads for real rclpy walks the same table, without slots and classes.
+
+Most are named tuples: a run makes millions, and a frozen dataclass takes three times as long to make. A
+named tuple cannot have a field `count`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 from ifgen.definition.types import BasicTypeName, NamespacedType
 
@@ -57,24 +60,21 @@ NUMBERS: Final[dict[BasicTypeName, Number]] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Slot:
+class Slot(NamedTuple):
     """The slot `name` of the message with this number. The message itself is number 0."""
 
     message: int
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Count:
+class Count(NamedTuple):
     """The number of elements: exactly `size`, or any number, or at most `maximum`."""
 
     size: int | None = None
     maximum: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Enter:
+class Enter(NamedTuple):
     """The slot holds a message of this type, which gets the number `message`. Nothing on the wire."""
 
     slot: Slot
@@ -82,16 +82,14 @@ class Enter:
     type: NamespacedType
 
 
-@dataclass(frozen=True, slots=True)
-class Value:
+class Value(NamedTuple):
     """One basic value."""
 
     slot: Slot
     type: BasicTypeName
 
 
-@dataclass(frozen=True, slots=True)
-class Array:
+class Array(NamedTuple):
     """A fixed array of numbers, which is a numpy array in Python."""
 
     slot: Slot
@@ -107,15 +105,13 @@ class Blank:
 Item: TypeAlias = Enter | Value | Array | Blank
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
+class Run(NamedTuple):
     """Items with the same layout in every message, except for the alignment of the start."""
 
     items: tuple[Item, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Text:
+class Text(NamedTuple):
     """One string; `maximum` bounds its characters."""
 
     slot: Slot
@@ -153,8 +149,7 @@ class Repeat:
     body: tuple[Instruction, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(NamedTuple):
     """The message with this number, which is so large that it has a program of its own."""
 
     message: int

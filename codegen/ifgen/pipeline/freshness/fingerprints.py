@@ -65,13 +65,14 @@ def of_modules(registry: Registry, generator: bytes) -> dict[str, str]:
     """
     interfaces = {part.type_name: interface for interface in registry for part in _parts(interface)}
     interfaces |= {interface.type_name: interface for interface in registry}
-    texts = {i.type_name: of_source(i.source) for i in registry if i.source is not None}
+    texts = {i.type_name: of_source(i.source) if i.source is not None else b"" for i in registry}
+    named = {name: _named(name, text) for name, text in texts.items()}
     direct = {i.type_name: {interfaces[name].type_name for name in needed_types(i)} for i in registry}
-    return {name: _of_module(name, direct, texts, generator) for name in direct}
+    return {name: _of_module(name, direct, named, generator) for name in direct}
 
 
 def _of_module(
-    name: str, direct: Mapping[str, set[str]], texts: Mapping[str, bytes], generator: bytes
+    name: str, direct: Mapping[str, set[str]], named: Mapping[str, bytes], generator: bytes
 ) -> str:
     found = {name}
     pending = [name]
@@ -81,7 +82,7 @@ def _of_module(
         pending += more
     hasher = hashlib.sha256(generator + name.encode())
     for needed in sorted(found):
-        hasher.update(_named(needed, texts.get(needed, b"")))
+        hasher.update(named[needed])
     return hasher.hexdigest()[:32]
 
 

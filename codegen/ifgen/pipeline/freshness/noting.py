@@ -9,19 +9,20 @@ from ifgen.definition.interfaces import Interface, Registry
 from ifgen.diagnostics import Diagnostic
 from ifgen.pipeline import earlier
 from ifgen.pipeline.freshness import fingerprints, notes, remembered
+from ifgen.pipeline.freshness.modules import Modules
 from ifgen.pipeline.freshness.notes import Note, Notes
 from ifgen.pipeline.freshness.state import State, modules_of_users
 from ifgen.pipeline.job import Job, Target
 from ifgen.writing.write import ROOT
 
 
-def note(job: Job, told: Sequence[Diagnostic], state: State, before: Notes) -> None:
+def note(job: Job, told: Sequence[Diagnostic], state: State, before: Notes, known: Modules | None) -> None:
     """Note that the packages of a run have been generated just now from what was read for it."""
     names = [target.name for target in job.targets]
     ours = state.ours.union(names) if state.ours else state.ours
     # The digests of what was parsed count, not the current state of the files.
     digests = state.digests.knowing(_as_read(job))
-    modules = fingerprints.of_modules(job.registry, digests.generator)
+    modules = known.digests if known else fingerprints.of_modules(job.registry, digests.generator)
     packages = dict(before.packages)
     for target in job.targets:
         sources = _note(target, job.registries, modules)

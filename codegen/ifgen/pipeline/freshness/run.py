@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import TypeVar
 
 from ifgen.pipeline.freshness import notes
@@ -15,20 +16,23 @@ Done = TypeVar("Done")
 
 
 def unless_fresh(
-    inputs: Inputs, make: Callable[[Inputs, Unchanged], Made], finish: Callable[[Inputs, Made], Done]
+    inputs: Inputs,
+    make: Callable[[Inputs, Unchanged], Made],
+    prepare: Callable[[Inputs, Made], AbstractContextManager[Callable[[], Done]]],
 ) -> Done:
-    """Make what an earlier run did not leave as it has to be, finish that, and remember it for the next run.
+    """Make what an earlier run did not leave as it has to be, write that, and remember it for the next run.
 
-    Nothing is made if nothing has changed. Once it is being finished, an interruption waits.
+    Nothing is made if nothing has changed. `prepare` does all but the last step, during which an interruption
+    waits.
     """
     noted = notes.read(inputs.output)
     state = state_of(inputs, noted)
     unchanged = unchanged_since(noted, state)
     made = unchanged.done or make(inputs, unchanged)
-    with interruption.held("all files had been written"):
-        done = finish(inputs, made)
+    with prepare(inputs, made) as finish, interruption.held("all files had been written"):
+        done = finish()
         if made.job is not None:
             from ifgen.pipeline.freshness.noting import note  # nothing to note if nothing has changed
 
-            note(made.job, made.told, state, noted)
-    return done
+            note(made.job, made.told, state, noted, made.modules)
+        return done

@@ -71,15 +71,22 @@ def wrapped(text: str, indent: int) -> list[str]:
     if _fits(text, indent):
         return [margin + text]
     lines: list[str] = []
-    line, depth = margin, 0
+    line, counted, depth = margin, 0, 0
     for part in _parts(text, LINE_LENGTH - len(margin) - 4):
-        if depth and len(line) + len(part) > LINE_LENGTH:
-            lines.append(line.rstrip())
-            line = margin + "    "
+        if len(line) + len(part) > LINE_LENGTH:
+            depth += _opened(line[counted:])
+            counted = len(line)
+            if depth:
+                lines.append(line.rstrip())
+                line, counted = margin + "    ", 0
         line += part + " "
-        depth += part.count("(") + part.count("[") + part.count("{")
-        depth -= part.count(")") + part.count("]") + part.count("}")
     return [*lines, line.rstrip()]
+
+
+def _opened(text: str) -> int:
+    """The number of brackets that are open after a text."""
+    opened = text.count("(") + text.count("[") + text.count("{")
+    return opened - text.count(")") - text.count("]") - text.count("}")
 
 
 def _parts(text: str, room: int) -> Iterator[str]:
