@@ -88,6 +88,9 @@ def _run(folder: Path, *command: str, interrupt: int = 0, **environment: str) ->
 def _own_words(stderr: str) -> str:
     """The output without frames of tracebacks outside the program: those differ between the two rclpy."""
     stderr = re.sub(r"0x[0-9a-f]+", "ADDRESS", stderr)
+    stderr = re.sub(
+        r"^\[WARN\] \[\d+\.\d+\] \[rcl\]: The parameter .*\n", "", stderr, flags=re.MULTILINE
+    )  # of ours
     # CPython 3.13 prints this for any weak method that it meets at exit.
     stderr = re.sub(r"Exception ignored in: <function WeakMethod(.*\n)+?AttributeError: .*\n", "", stderr)
     stderr = re.sub(r"^ +[~^]+\n", "", stderr, flags=re.MULTILINE)  # not every Python marks everything

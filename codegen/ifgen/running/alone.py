@@ -50,10 +50,11 @@ def _hear_again(report: Callable[[Any], object], error: Any) -> None:
 
 
 def _write_whole_lines() -> None:
-    """Write each line at once, also to a file or a pipe: other programs write there, too."""
-    stdout: object = sys.stdout
-    if isinstance(stdout, TextIOWrapper):  # None, where there is no output
-        stdout.reconfigure(line_buffering=True)
+    """Write each line at once and whole, also to a file or a pipe: other programs write there, too."""
+    streams: tuple[object, ...] = (sys.stdout, sys.stderr)
+    for stream in streams:
+        if isinstance(stream, TextIOWrapper):  # None, where there is no output
+            stream.reconfigure(line_buffering=True, write_through=False)
 
 
 def _be_quiet_when(is_dismissed: Callable[[], bool]) -> None:

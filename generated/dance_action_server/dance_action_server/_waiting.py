@@ -172,8 +172,10 @@ async def _within(node: Node, future: Future, seconds: float) -> bool:
         callback_group=ReentrantCallbackGroup(),
         clock=Clock(clock_type=ClockType.STEADY_TIME),
     )
+    ended = Future(executor=node.executor)  # rclpy warns of whoever awaits a future that is cancelled
+    future.add_done_callback(lambda _: ended.set_result(None))
     try:
-        await future
+        await ended
     finally:
         node.destroy_timer(timer)
     return future.done()
