@@ -31,6 +31,24 @@ def test_late_subscriptions_get_what_durable_publishers_have_kept(two: tuple[Pai
     assert volatile == [9.5]
 
 
+def test_a_late_subscription_of_the_publishers_own_process_gets_it_once(two: tuple[Pair, Node, Node]) -> None:
+    """The middleware asks every publisher for what it kept, those of this process too."""
+    pair, one, other = two
+    publisher = one.create_publisher(Float64, "state", DURABLE)
+    heard: list[float] = []
+    other.create_subscription(Float64, "state", lambda message: heard.append(message.data), DURABLE)
+    publisher.publish(Float64(data=0.1))
+    pair.until(lambda: heard)  # both processes are linked
+    late: list[float] = []
+    one.create_subscription(Float64, "state", lambda message: late.append(message.data), DURABLE)
+    pair.until(lambda: late)
+    pair.settle()
+    publisher.publish(Float64(data=0.2))
+    pair.until(lambda: late[-1] == 0.2)
+    pair.settle()
+    assert late == [0.1, 0.2]
+
+
 def test_a_process_that_comes_later_gets_what_was_kept_before_there_was_a_link(across: Pair) -> None:
     pair, process = across, across.process("one")
     one = process.node

@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 from functools import partial
 from typing import Any, Final
+from weakref import WeakValueDictionary
 
 import zenoh
 from zenoh import CongestionControl, Locality, Reliability, SampleKind
@@ -78,6 +79,7 @@ class ZenohTransport:
     def __init__(
         self, domain: int, configuration: Callable[[], zenoh.Config], *, is_private: bool = False
     ) -> None:
+        self._keeping: WeakValueDictionary[bytes, Publication] = WeakValueDictionary()
         self.malformed = Repeated("dropped {count} malformed message{s} from another process: {why}")
         self._gate = Gate()
         self._background = Background()
@@ -218,7 +220,9 @@ class ZenohTransport:
         token, gid = self._token(publisher)
         say_alive, ask = partial(self._say_alive, gid), partial(self._receipts, gid)
         publication = Publication(self._gate, token, gid, declared, say_alive, ask)
-        if qos.durability != TRANSIENT_LOCAL:  # what is kept for late joiners would stay lent
+        if qos.durability == TRANSIENT_LOCAL:
+            self._keeping[gid] = publication
+        else:  # what is kept for late joiners would stay lent
             lend = partial(self._lending.lend, key, audience, options["congestion_control"])
             publication.shorten(lend, self._lending.threshold)
         return publication
@@ -353,7 +357,8 @@ class ZenohTransport:
             on_sample(sample.payload.to_bytes(), 0, time.time_ns(), b"")
             return
         known = self._unpacked(attached)
-        if known is not None:
+        # Zenoh asks all publishers for what they kept, those of this process too, which delivered it already.
+        if known is not None and known.gid not in self._keeping:
             data = sample.payload.to_bytes()
             if len(data) >= self._lending.threshold:
                 self._lending.keep()
