@@ -33,15 +33,24 @@ def test_the_pictures_are_up_to_date() -> None:
     assert (checked.stdout, checked.stderr, checked.returncode) == ("", "", 0)
 
 
+def test_the_list_of_modules_has_a_sentence_for_each() -> None:
+    command = [sys.executable, str(ROOT / "docs/modules.py"), "ifgen/pipeline"]
+    listed = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (listed.stderr, listed.returncode) == ("", 0)
+    assert re.search(r"^  stages +The work of ifgen", listed.stdout, re.MULTILINE)
+
+
 def test_no_room_is_crowded() -> None:
-    rooms = Counter(path.parent for path in (ROOT / "codegen/ifgen").rglob("*.py"))
-    assert {room: size for room, size in rooms.items() if size > 20 + 1} == {}  # and its __init__.py
+    rooms = Counter(path.parent for path in (ROOT / "codegen").rglob("*.py"))
+    crowds = {str(room.relative_to(ROOT / "codegen")) for room, size in rooms.items() if size > 20 + 1}
+    # In rclpy the modules are upstream's, and so is their number in C. The other two are to become smaller.
+    assert crowds == {"ifgen_runtime", "ifgen_runtime/bag", "underlay/rclpy", "underlay/rclpy/impl/rcl"}
 
 
 def test_what_the_walks_name_is_there() -> None:
     page = (ROOT / "docs/architecture.md").read_text().partition("## 5. ")[2].partition("## 6. ")[0]
     steps = re.findall(r"^\d+\. `([^`]+)`", page, re.MULTILINE)
-    assert len(steps) == 12 + 15 + 11
+    assert len(steps) == 12 + 11
     folders = (ROOT, ROOT / "codegen/ifgen", ROOT / "codegen/underlay")
     assert [step for step in steps if not any((folder / step).is_file() for folder in folders)] == []
 
