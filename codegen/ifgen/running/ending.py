@@ -85,7 +85,7 @@ def _advice(error: ImportError) -> str:
 def _inside(module_name: str, wrong: str, *, is_suggested: bool = False) -> str:
     """Advice about a name in a module.
 
-    Where Python has a suggestion itself (since 3.12), that is of what the module has, not of what it can import.
+    Where Python has a suggestion itself (since 3.12), it is of what the module has, not of its modules.
     """
     from difflib import get_close_matches  # only a mistake needs it
     from pkgutil import iter_modules
