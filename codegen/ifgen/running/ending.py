@@ -23,7 +23,7 @@ _WITH_A_ROS: Final = ("cv_bridge", "image_geometry", "laser_geometry", "launch_t
 """Libraries of ROS that are compiled, or stand on such ones."""
 
 _NO_SUCH_NAME: Final = re.compile(r"cannot import name '([^']+)' from '([^']+)' ")
-"""What Python says of a name that a module lacks; 3.11 has the two names nowhere else."""
+"""The words of Python about a name that a module lacks; 3.11 has the two names nowhere else."""
 
 _HERE = Path(__file__).parent
 _IMPORTING = {importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}

@@ -18,7 +18,7 @@ _MOST: Final = 1000
 
 
 class _Said(Exception):
-    """What is said may quote a file, which must not steer the terminal of whoever prints it."""
+    """A text about a file, without what could steer the terminal of whoever prints it."""
 
     def __init__(self, text: str = "") -> None:
         super().__init__(printable_lines(text))
