@@ -58,7 +58,7 @@ class RecordOptions:
     ignore_leaves: bool = False
     use_sim_time: bool = False
     most_waiting: int = 2**30
-    """Bytes of messages that may wait for the disk, if it is more than one. Others are left out, and counted."""
+    """Bytes of messages that may wait for the disk. What comes then is left out, and counted."""
 
 
 @dataclass(slots=True)
