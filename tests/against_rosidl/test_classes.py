@@ -30,7 +30,7 @@ WHEELS = [
     ),
     *("nav_msgs", "rcl_interfaces", "rosgraph_msgs", "sensor_msgs", "service_msgs", "shape_msgs", "std_msgs"),
     *("std_srvs", "stereo_msgs", "test_msgs", "trajectory_msgs", "type_description_interfaces"),
-    *("unique_identifier_msgs", "visualization_msgs"),
+    *("rmw_dds_common", "unique_identifier_msgs", "visualization_msgs"),
 ]
 # An array that Python or numpy cannot convert for rosidl's setter, while no check refuses it.
 REFUSED_ARRAY = re.compile(r" of an array -> ! (?!AssertionError)")

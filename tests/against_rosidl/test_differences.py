@@ -14,7 +14,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from ifgen import resources
 from ifgen.definition.resolve import resolve
+from ifgen.definition.type_description import described_types, type_hash
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.reading.packages import find_packages
 from ifgen.reading.search_path import SearchPath
@@ -153,6 +155,33 @@ def test_rosidl_overwrites_what_has_the_same_name(rosidl: Reference, tmp_path: P
     from rosidl_pycommon import convert_camel_case_to_lower_case_underscore as module_name
 
     assert module_name("GPSFix") == module_name("GpsFix")
+
+
+@pytest.mark.parametrize("folder", ["idl", "types", "more/idl"])
+@pytest.mark.parametrize(
+    ("kind", "structs"), [("msg", ["Demo"]), ("srv", ["Demo_Request", "Demo_Response"])], ids=["msg", "srv"]
+)
+def test_an_idl_file_can_be_in_any_folder(
+    folder: str, kind: str, structs: list[str], rosidl: Reference, tmp_path: Path
+) -> None:
+    """Its module says what it is, and the hash is the same for both."""
+    package, name = tmp_path / "demo_msgs", f"{folder}/Demo.idl"
+    (package / folder).mkdir(parents=True)
+    members = " ".join(f"struct {struct} {{ float range; }};" for struct in structs)
+    (package / name).write_text(f"module demo_msgs {{ module {kind} {{ {members} }}; }};\n")
+    (package / "package.xml").write_text("<package><name>demo_msgs</name></package>\n")
+    (package / "CMakeLists.txt").write_text(
+        f'project(demo_msgs)\nrosidl_generate_interfaces(${{PROJECT_NAME}} "{name}")\n'
+    )
+    packages = find_packages([package])
+    registry = resolve(packages, SearchPath([*packages, *find_packages([resources.bundled_interfaces()])]))
+    interface = registry.interface(f"demo_msgs/{kind}/Demo")
+    mine = {each.type_name: type_hash(each, registry) for each in described_types(interface)}
+    theirs: dict[str, str] = {}
+    for description in _type_hashes(package, [name]):
+        hashes = json.loads(Path(description).read_text())["type_hashes"]
+        theirs |= {item["type_name"]: item["hash_string"] for item in hashes}
+    assert mine.items() <= theirs.items()
 
 
 def _diagnostics(folder: Path) -> tuple[Diagnostic, ...]:

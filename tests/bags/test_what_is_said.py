@@ -370,3 +370,36 @@ def test_places_where_nothing_can_be_written(tmp_path: Path, monkeypatch: pytest
         patched.setattr(Path, "unlink", refuse)
         with pytest.raises(BagError, match="file: cannot be overwritten: Permission denied"):
             Recorder(tmp_path / "file", overwrite=True)
+
+
+STEERING = "\x1b]0;owned\x07\x9b31m\N{RIGHT-TO-LEFT OVERRIDE}"
+
+
+@pytest.mark.parametrize("strict", [False, True])
+def test_a_file_does_not_steer_the_terminal_of_a_script(tmp_path: Path, strict: bool) -> None:
+    """What a script prints of a warning, an error or the list of damage has nothing of the file that could."""
+    path = tmp_path / "drive.mcap"
+    topic = f"/{STEERING}".encode()
+    names = len(topic).to_bytes(4, "little") + topic + text("cdr") + text("")
+    log = record(CHANNEL, numbers((0, 2), (1, 2)) + names)
+    short = record(MESSAGE, numbers((0, 2), (0, 4), (5, 8), (5, 8)) + b"\0\1\0\0\2\0\0\0")
+    path.write_bytes(without_summary(DEFINITION, log, short))
+    said: list[object] = []
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            with Bag(path, strict=strict) as bag:
+                list(bag[topic.decode()])
+                said += [*bag.damage, *(each.text for each in bag.damage)]
+        except BagError as error:
+            said.append(error)
+    said += [warning.message for warning in caught]
+    assert len(said) == (1 if strict else 3)
+    for each in map(str, said):
+        assert "owned" in each
+        assert each.isprintable()
+
+
+def test_lines_of_an_error_stay_lines() -> None:
+    assert str(BagError("two\x1b\nlines")) == "two?\nlines"
+    assert issubclass(BagWarning, UserWarning)

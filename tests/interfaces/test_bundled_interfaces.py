@@ -26,6 +26,7 @@ WITH_WHEELS = [
     "lifecycle_msgs",
     "nav_msgs",
     "rcl_interfaces",
+    "rmw_dds_common",
     "rosgraph_msgs",
     "sensor_msgs",
     "service_msgs",

@@ -20,7 +20,6 @@ from ifgen.running.ending import tell
         ("cv_bridge", "help: 'cv_bridge' comes with a ROS only: source one."),
         ("moveit_msgs.msg", "help: put the interfaces of 'moveit_msgs' among those of your project"),
         ("numpyy", ""),
-        ("nav_msgs.mgs", ""),
     ],
 )
 def test_advice(
@@ -38,3 +37,27 @@ def test_advice(
     said = capsys.readouterr().err.splitlines()
     assert said[0] == f"ModuleNotFoundError: No module named {name!r}"
     assert said[1:] == [] if not advice else said[1].startswith(advice)
+
+
+@pytest.mark.parametrize(
+    ("line", "near"),
+    [
+        ("import nav_msgs.mgs", "nav_msgs.msg"),
+        ("from nav_msgs.mgs import Odometry", "nav_msgs.msg"),
+        ("from nav_msgs import mgs", "nav_msgs.msg"),
+        ("from rclpy.exectuors import Executor", "rclpy.executors"),
+        ("from std_msgs.msg import Strng", "String"),
+        ("from sensor_msgs.msg import Lasercan", "LaserScan"),
+        ("from nav_msgs.msg import Spectrometer", ""),
+        ("import nav_msgs.spectrometer", ""),
+    ],
+)
+def test_near_names_within_a_package(line: str, near: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """They are said once: since 3.12, Python itself suggests names that a module has."""
+    with pytest.raises(ImportError) as raised:
+        exec(line, {})
+    tell(raised.value)
+    said = capsys.readouterr().err
+    last = said[said.index("Error: ") :]
+    assert last.lower().count("did you mean") == (near != "")
+    assert near in last

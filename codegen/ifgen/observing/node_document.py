@@ -8,6 +8,7 @@ from typing import Any, Final
 
 import yaml
 
+from ifgen.diagnostics import shown_character
 from ifgen.graph.model import SeenEndpoint
 from ifgen.nodl import names
 from ifgen.nodl.model import Category, QosProfile
@@ -76,12 +77,8 @@ def document_of(seen: Seen, node: str) -> tuple[dict[str, Any], list[str]]:
 
 def as_yaml(document: dict[str, Any], omitted: Iterable[str]) -> str:
     """The document as YAML, with comments on what is left out."""
-    comments = "".join(f"# left out: {_printable(reason)}\n" for reason in omitted)
+    comments = "".join(f"# left out: {''.join(map(shown_character, reason))}\n" for reason in omitted)
     return comments + yaml.dump(document, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=100)
-
-
-def _printable(text: str) -> str:
-    return "".join(character if character.isprintable() else "?" for character in text)
 
 
 def as_json(document: dict[str, Any], omitted: list[str]) -> str:

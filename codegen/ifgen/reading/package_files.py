@@ -31,7 +31,7 @@ NODE_EXTENSIONS: Final = (".nodl.json", ".nodl.yaml", ".nodl.yml")
 IDL: Final = ".idl"
 """The extension of interfaces in OMG IDL, of all three kinds."""
 
-_MODULE: Final = re.compile(rf"^\s*module\s+({'|'.join(FOLDERS)})\b", re.MULTILINE)
+_MODULE: Final = re.compile(rf"(?:^|[{{}};)])\s*module\s+({'|'.join(FOLDERS)})\b", re.MULTILINE)
 _ADAPTED: Final = b"// generated from rosidl_adapter/"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import re
 import sys
 import traceback
 from pathlib import Path
@@ -20,6 +21,9 @@ PATIENCE = 5.0
 
 _WITH_A_ROS: Final = ("cv_bridge", "image_geometry", "laser_geometry", "launch_testing", "rosbag2_py")
 """Libraries of ROS that are compiled, or stand on such ones."""
+
+_NO_SUCH_NAME: Final = re.compile(r"cannot import name '([^']+)' from '([^']+)' ")
+"""The words of Python about a name that a module lacks; 3.11 has the two names nowhere else."""
 
 _HERE = Path(__file__).parent
 _IMPORTING = {importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>"}
@@ -55,7 +59,7 @@ def tell(ending: BaseException) -> None:
     if isinstance(ending, KeyboardInterrupt) and _is_importing(ending.__traceback__):
         print("interrupted", file=sys.stderr)
         return
-    if isinstance(ending, ModuleNotFoundError) and (advice := _advice(ending)):
+    if isinstance(ending, ImportError) and (advice := _advice(ending)):
         ending.add_note(advice)
     each: BaseException | None = ending
     while each is not None:
@@ -69,8 +73,33 @@ def tell(ending: BaseException) -> None:
         print("".join(traceback.format_exception(ending)), end="", file=sys.stderr, flush=True)
 
 
-def _advice(error: ModuleNotFoundError) -> str:
-    """Advice about a package that is not there: one spelled like it, or what to do without it."""
+def _advice(error: ImportError) -> str:
+    """Advice about what is not there: something spelled like it, or what to do without it."""
+    if isinstance(error, ModuleNotFoundError):
+        parent, _, name = (error.name or "").rpartition(".")
+        return _inside(parent, name) if parent in sys.modules else _advice_on_package(error)
+    wrong = _NO_SUCH_NAME.match(str(error))
+    return _inside(wrong[2], wrong[1], is_suggested=hasattr(error, "name_from")) if wrong else ""
+
+
+def _inside(module_name: str, wrong: str, *, is_suggested: bool = False) -> str:
+    """Advice about a name in a module.
+
+    Where Python has a suggestion itself (since 3.12), it is of what the module has, not of its modules.
+    """
+    from difflib import get_close_matches  # only a mistake needs it
+    from pkgutil import iter_modules
+
+    module = sys.modules.get(module_name)
+    names = set(dir(module))
+    modules = {each.name for each in iter_modules(getattr(module, "__path__", ()))}
+    known = modules - names if is_suggested else modules | names
+    near = get_close_matches(wrong, sorted(each for each in known if each[:1] != "_"), n=1, cutoff=0.6)
+    return f"help: did you mean '{module_name}.{near[0]}'?" if near and near[0] != wrong else ""
+
+
+def _advice_on_package(error: ModuleNotFoundError) -> str:
+    """Advice about a package that is not there."""
     from difflib import get_close_matches  # only a mistake needs it
 
     name = (error.name or "").partition(".")[0]

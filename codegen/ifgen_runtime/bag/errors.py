@@ -8,6 +8,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
 
+from ifgen_runtime.printable import printable_lines
+
 UNPACKS: Final = "more than ifgen reads of a file of this size without `unlimited`"
 """The end of the reason why a file is not read that unpacks to far more than its size."""
 
@@ -15,11 +17,18 @@ _MOST: Final = 1000
 """Places of damage that are listed."""
 
 
-class BagError(Exception):
+class _Said(Exception):
+    """A text about a file, without what could steer the terminal of whoever prints it."""
+
+    def __init__(self, text: str = "") -> None:
+        super().__init__(printable_lines(text))
+
+
+class BagError(_Said):
     """A recording cannot be read, written, or understood: where, what was expected, what to do."""
 
 
-class BagWarning(UserWarning):
+class BagWarning(_Said, UserWarning):
     """A part of a recording was left out, or is doubtful."""
 
 
@@ -57,7 +66,7 @@ class Damages:
 
     def note(self, path: Path, offset: int | None, text: str) -> None:
         """Raise BagError if reading is strict; otherwise warn, once for each place."""
-        damage = Damage(path, offset, text)
+        damage = Damage(path, offset, printable_lines(text))
         if self.strict:
             raise BagError(str(damage))
         if damage in self._found or len(self._found) > _MOST:

@@ -74,6 +74,7 @@ def record_command(**chosen: Any) -> RecordCommand:
         dict(map(_pair, chosen["custom_data"])),
         not chosen["disable_keyboard_controls"],
         chosen["node_name"],
+        chosen["max_waiting_size"],
     )
 
 

@@ -152,6 +152,13 @@ def bag() -> None:
     metavar="BYTES",
     help="What a snapshot holds at most.",
 )
+@click.option(
+    "--max-waiting-size",
+    type=click.IntRange(min=0),
+    default=2**30,
+    metavar="BYTES",
+    help="What may wait in memory for a slow disk. What comes then is left out, and counted.",
+)
 @click.option("--snapshot-mode", is_flag=True, help="Write only when the service ~/snapshot is called.")
 @click.option("--start-paused", is_flag=True, help="Wait for SPACE, or for the service ~/resume.")
 @click.option("--use-sim-time", is_flag=True, help="Take the times from the topic /clock.")

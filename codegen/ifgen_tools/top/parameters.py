@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
+from ifgen_runtime.printable import printable
+
 if TYPE_CHECKING:
     from ifgen_tools.session import Session
 
@@ -59,11 +61,6 @@ def shown(value: Any) -> str:
         return str(found).lower() if isinstance(found, bool) else str(found)
     values = [each[0] if isinstance(each, bytes) else each for each in found]
     return printable(str(values))
-
-
-def printable(text: str) -> str:
-    """The text without what could control a terminal."""
-    return "".join(each if each.isprintable() else "?" for each in text)
 
 
 def _asked(session: Session, kind: type[Any], name: str, request: Any) -> Any:

@@ -6,6 +6,8 @@ import json
 from dataclasses import dataclass, field
 from typing import Any, Final
 
+from ifgen_runtime.printable import printable
+
 _VERSION: Final = 1
 _LONGEST: Final = 4_000_000  # bytes of an answer
 _MOST: Final = 2000  # entries of each kind
@@ -123,7 +125,7 @@ def _text(value: Any) -> str:
     """A text that can be printed: what came may have sequences that control a terminal."""
     if not isinstance(value, str) or len(value) > _LONGEST_TEXT:
         raise ValueError
-    return "".join(each if each.isprintable() else "?" for each in value)
+    return printable(value)
 
 
 def _number(value: Any) -> int:

@@ -65,7 +65,16 @@ def echo(
                 shown.append(True)
 
         on_lost = None if no_lost_messages else _tell_of_lost
-        listening.listen(session, topic, cls, hear, chosen, raw=form == "raw", on_lost=on_lost)
+        listening.listen(
+            session,
+            topic,
+            cls,
+            hear,
+            chosen,
+            raw=form == "raw",
+            on_lost=on_lost,
+            is_named=message_type is not None,
+        )
         session.wait_for(lambda: once and bool(shown), timeout)
     return 0
 

@@ -74,10 +74,14 @@ def refuse_other_types(session: Session, topic: str, cls: type[Any]) -> None:
     """Raise ToolError if a topic is there, and is of other types than the class."""
     found = {each.name for each in topic_types(session.node, topic)}
     if found and type_name(cls) not in found:
-        raise ToolError(
-            f"the topic {topic!r} has the type {' and '.join(sorted(found))}, not {type_name(cls)}",
-            f"see `ifgen topic type {topic}`",
-        )
+        raise _of_other_types(topic, found, type_name(cls))
+
+
+def _of_other_types(topic: str, found: set[str], name: str) -> ToolError:
+    return ToolError(
+        f"the topic {topic!r} has the type {' and '.join(sorted(found))}, not {name}",
+        f"see `ifgen topic type {topic}`",
+    )
 
 
 def wait_for_topic(session: Session, topic: str) -> type[Any]:
@@ -122,8 +126,12 @@ def listen(
     *,
     raw: bool = False,
     on_lost: Callable[[Any], None] | None = None,
+    is_named: bool = False,
 ) -> None:
-    """Subscribe, and say on stderr which publishers do not match what the user chose."""
+    """Subscribe, and say on stderr which publishers do not match what the user chose.
+
+    Where the user named the type, spinning raises ToolError once the topic is published as others only.
+    """
     from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
     profile = profile_for(session, topic, chosen)
@@ -134,19 +142,21 @@ def listen(
         subscribe(cls, topic, hear, profile, raw=raw, event_callbacks=events)
     except UnsupportedEventTypeError:  # this middleware does not tell
         subscribe(cls, topic, hear, profile, raw=raw)
-    _watch_types(session, topic, type_name(cls))
+    _watch_types(session, topic, type_name(cls), is_named)
     if not session.node.count_publishers(topic):
         session.lookout.tell_of_other()
 
 
-def _watch_types(session: Session, topic: str, name: str) -> None:
-    """Say once on stderr that a topic is published as another type: nothing would be heard."""
+def _watch_types(session: Session, topic: str, name: str, is_named: bool) -> None:
+    """Say or raise it once if a topic is published as other types only: nothing would be heard."""
     from rclpy.clock import Clock, ClockType
 
     def check() -> None:
         published = {info.topic_type for info in session.node.get_publishers_info_by_topic(topic)}
         if published and name not in published:
             timer.cancel()
+            if is_named:  # discovery was too late for `refuse_other_types`
+                raise _of_other_types(topic, published, name)
             others = ", ".join(sorted(published))
             print(f"WARNING: {topic} is published as {others}, not as {name}", file=sys.stderr, flush=True)
 

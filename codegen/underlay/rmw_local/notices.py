@@ -6,6 +6,8 @@ import _thread
 import sys
 from collections.abc import Sequence
 
+from ifgen_runtime.printable import printable
+
 from rmw_local import timing
 
 _SECOND = 1_000_000_000  # [ns]
@@ -16,11 +18,6 @@ def say(text: str) -> None:
     """Print one line on stderr, if there is one (pythonw has none)."""
     if sys.stderr is not None:
         sys.stderr.write(f"rmw_local: {text}\n")
-
-
-def printable(text: str) -> str:
-    """The text with a question mark in place of all that could control a terminal or end a line."""
-    return text if text.isprintable() else "".join(each if each.isprintable() else "?" for each in text)
 
 
 class Repeated:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import time
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -59,6 +59,8 @@ class RecordCommand:
     custom_data: Mapping[str, str] = field(default_factory=dict[str, str])
     has_keys: bool = True
     node_name: str = "rosbag2_recorder"
+    most_waiting: int = 2**30
+    """Bytes of messages that may wait for the disk."""
 
 
 def record(
@@ -97,6 +99,7 @@ class Recording:
             command.include_unpublished,
             command.ignore_leaves,
             command.use_sim_time,
+            command.most_waiting,
         )
         self.topics = TopicRecorder(session.node, options, self._open)
         self.topics.is_paused = command.is_paused
@@ -105,8 +108,6 @@ class Recording:
         )
         self._kept: deque[tuple[Channel, int, int, bytes]] = deque()
         self._kept_size = 0
-        self._left: Counter[str] = Counter()
-        """Messages that came and are not in the bag, by topic."""
         offer_services(session.node, self)
 
     def run(self, is_done: Callable[[Recording], bool]) -> None:
@@ -127,13 +128,14 @@ class Recording:
                 if command.has_discovery:
                     self._look_again(self._session.node, command.interval)
                 while self._session.context.ok() and not stop.number and not is_done(self):
-                    self._session.turn(_LOOK)
+                    self._session.turn(0.0 if self.topics.has_waiting else _LOOK)
+                    self.topics.record_some()
                     self.writer.flush_old()
                     keys.look()
                 if stop.number:
                     self._take_what_came(stop)
             except Exception:
-                self._left += self.topics.leave(time.time_ns())
+                self.topics.leave(time.time_ns())
                 raise
             finally:
                 self.topics.close()
@@ -158,7 +160,7 @@ class Recording:
             return passed < _PATIENCE[signal.Signals(stop.number)] and not stop.is_impatient
 
         self.topics.drain(until, may_go_on)
-        self._left += self.topics.leave(until)
+        self.topics.leave(until)
 
     def _look_again(self, node: Any, interval: float) -> None:
         from rclpy.clock import Clock, ClockType
@@ -205,7 +207,7 @@ class Recording:
         say(f"Recorded {count:,} message{'s' * (count != 1)} to {self._output}")
         for topic, lost in self.topics.lost.items():
             warn(f"on the way here, {_messages(lost, topic)} lost")
-        for topic, left in sorted(self._left.items()):
+        for topic, left in sorted((+self.topics.left).items()):
             warn(f"{_messages(left, topic)} received, and not recorded: the disk was too slow")
 
 

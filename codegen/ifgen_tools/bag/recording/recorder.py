@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
@@ -24,10 +24,13 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 _DEPTH: Final = 100_000
-"""Messages of a topic that may wait while others are taken: a burst must not be lost."""
+"""Messages of a topic that the middleware may hold while a turn of another one is written."""
+
+_AROUND: Final = 200
+"""Bytes that a waiting message takes besides its own."""
 
 _AT_ONCE: Final = 5000
-"""Messages of a topic that are taken before others get their turn."""
+"""Messages of a topic that are taken or written before others get their turn."""
 
 _BYTES_AT_ONCE: Final = 2**20
 """Bytes of a topic after which others get their turn: small messages must not wait for 200 images."""
@@ -54,31 +57,26 @@ class RecordOptions:
     include_unpublished: bool = False
     ignore_leaves: bool = False
     use_sim_time: bool = False
+    most_waiting: int = 2**30
+    """Bytes of messages that may wait for the disk. What comes then is left out, and counted."""
 
 
 @dataclass(slots=True)
 class _Source:
-    """A subscription, and where its messages go."""
+    """A subscription, where its messages go, and those that wait for the disk."""
 
     topic: str
     subscription: Subscription[Any]
-    record: Callable[[bytes, Any], None]
+    write: Write
+    waiting: deque[tuple[bytes, int, int]] = field(default_factory=deque[tuple[bytes, int, int]])
 
     def take(self, until: int | None = None) -> Any:
-        """The next message that waits, with its metadata; None if there is none that came until then [ns]."""
+        """The next message of the middleware and its metadata; None if none came until then [ns]."""
         with self.subscription.handle:
             taken = self.subscription.handle.take_message(self.subscription.msg_type, True)
         if taken is None or (until is not None and _received(taken[1]) > until):
             return None
         return taken
-
-    def turn(self, taken: Any, until: int | None = None) -> None:
-        """Record a message and those that wait after it, until it is the turn of others."""
-        count = size = 0
-        while taken is not None:
-            self.record(*taken)
-            count, size = count + 1, size + len(taken[0])
-            taken = self.take(until) if count < _AT_ONCE and size < _BYTES_AT_ONCE else None
 
 
 class TopicRecorder:
@@ -87,6 +85,9 @@ class TopicRecorder:
     def __init__(self, node: Node, options: RecordOptions, open: Open) -> None:
         """Subscribe with a node."""
         self.is_paused = False
+        self.left: Counter[str] = Counter()
+        """Messages that were received and are not recorded, by topic."""
+        self._waiting_size = 0
         self._node, self._options, self._open = node, options, open
         self._subscribed: dict[tuple[str, WireType], _Source] = {}
         self._asked: dict[tuple[str, WireType], Future[type[Any]]] = {}
@@ -115,6 +116,18 @@ class TopicRecorder:
                 if key not in self._subscribed and self._may_ask(key):
                     self._take(key)
 
+    @property
+    def has_waiting(self) -> bool:
+        """Whether messages wait for the disk."""
+        return self._waiting_size > 0
+
+    def record_some(self) -> None:
+        """Record what waits, a turn of each topic."""
+        for source in tuple(self._subscribed.values()):
+            if self._turn(source):  # the disk may be slow: the middleware must not overflow meanwhile
+                for other in self._subscribed.values():
+                    self._gather(other, other.take())
+
     def drain(self, until: int, may_go_on: Callable[[], bool]) -> None:
         """Record what waits and was received until a time [ns since 1970], each topic in its turn."""
         waiting = list(self._subscribed.values())
@@ -123,19 +136,53 @@ class TopicRecorder:
                 if not may_go_on():
                     return
                 taken = source.take(until)
-                if taken is None:
+                if taken is None and not source.waiting:
                     waiting.remove(source)
-                else:
-                    source.turn(taken, until)
+                    continue
+                self._gather(source, taken, until)
+                self._turn(source)
 
-    def leave(self, until: int) -> Counter[str]:
-        """Take what waits and was received until a time [ns since 1970], and only count it, by topic."""
-        left: Counter[str] = Counter()
+    def leave(self, until: int) -> None:
+        """Take what waits and was received until a time [ns since 1970], and only count it."""
         end = time.monotonic() + _COUNTING
         for source in self._subscribed.values():
+            self.left[source.topic] += len(source.waiting)
             while time.monotonic() < end and source.take(until) is not None:
-                left[source.topic] += 1
-        return left
+                self.left[source.topic] += 1
+
+    def _gather(self, source: _Source, taken: Any, until: int | None = None) -> None:
+        """Keep a message and those that the middleware has after it, until it is the turn of others."""
+        count = 0
+        while taken is not None:
+            self._keep(source, *taken)
+            count += 1
+            taken = source.take(until) if count < _AT_ONCE else None
+
+    def _keep(self, source: _Source, data: bytes, info: Any) -> None:
+        """Let a message wait for the disk, or count it if too much waits."""
+        if self.is_paused:
+            return
+        use_sim_time = self._options.use_sim_time
+        received = self._node.get_clock().now().nanoseconds if use_sim_time else _received(info)
+        if not received:  # there is no simulated time before the first /clock
+            return
+        size = self._waiting_size + len(data) + _AROUND
+        if self._waiting_size and size > self._options.most_waiting:
+            self.left[source.topic] += 1
+            return
+        source.waiting.append((data, received, info["source_timestamp"] or received))
+        self._waiting_size = size
+
+    def _turn(self, source: _Source) -> bool:
+        """Record what waits of a topic; returns whether that took a whole turn."""
+        waiting, count, size = source.waiting, 0, 0
+        while waiting and count < _AT_ONCE and size < _BYTES_AT_ONCE:
+            message = waiting.popleft()
+            length = len(message[0])
+            self._waiting_size -= length + _AROUND
+            source.write(*message)
+            count, size = count + 1, size + length
+        return count >= _AT_ONCE or size >= _BYTES_AT_ONCE
 
     def close(self) -> None:
         """Stop to record."""
@@ -198,28 +245,18 @@ class TopicRecorder:
             for info in self._node.get_publishers_info_by_topic(topic)
             if info.topic_type == wire.name
         ]
-        clock, use_sim_time = self._node.get_clock(), self._options.use_sim_time
-        write: Write | None = None
 
-        def record(data: bytes, info: Any) -> None:
-            if self.is_paused or write is None:
-                return
-            received = clock.now().nanoseconds if use_sim_time else _received(info)
-            if received:  # there is no simulated time before the first /clock
-                write(data, received, info["source_timestamp"] or received)
-
-        def turn(data: bytes, info: Any) -> None:
+        def hear(data: bytes, info: Any) -> None:
             """Take what waits besides, without a turn of the executor for each: half the time."""
-            source.turn((data, info))
+            self._gather(source, (data, info))
 
         try:
-            subscription = self._subscription(topic, cls, turn, self._profile(topic, offers))
+            subscription = self._subscription(topic, cls, hear, self._profile(topic, offers))
         except (RuntimeError, ValueError) as error:  # RCLError has no public name
             self._refused[key] = _AGAIN
             self._warn(f"{topic} is not recorded: {error}")
             return
-        source = self._subscribed[key] = _Source(topic, subscription, record)
-        write = self._open(topic, cls, offers)
+        source = self._subscribed[key] = _Source(topic, subscription, self._open(topic, cls, offers))
         say(f"Subscribed to topic '{topic}'")
 
     def _subscription(

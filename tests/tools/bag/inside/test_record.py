@@ -297,6 +297,38 @@ def test_small_messages_do_not_wait_for_images(talker: Node, monkeypatch: pytest
     assert order[3:36].count("/small") == 30, "all of them wait for one turn"
 
 
+def test_what_the_memory_has_no_room_for_is_counted(
+    talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While the first message is written, more than the middleware holds at once comes in two bursts."""
+    monkeypatch.setattr("ifgen_tools.bag.recording.recorder._DEPTH", 30)
+    monkeypatch.setattr("ifgen_tools.bag.recording.recorder._BYTES_AT_ONCE", 1)
+    publisher = talker.create_publisher(Point, "position", 30)
+    bursts = [points(30), points(30)]
+    whole = BagWriter.write
+
+    def slow(self: BagWriter, channel: Any, *message: Any) -> None:
+        whole(self, channel, *message)
+        for point in bursts.pop() if bursts else ():
+            publisher.publish(point)
+
+    monkeypatch.setattr(BagWriter, "write", slow)
+
+    def is_done(recording: Recording) -> bool:
+        if publisher.get_subscription_count() and len(bursts) == 2 and not recording.topics.has_waiting:
+            for point in points(10):
+                publisher.publish(point)
+        return not bursts and not recording.topics.has_waiting
+
+    run(command("drive", "/position", most_waiting=20 * (200 + 28)), is_done)
+    with Bag("drive", strict=True) as bag:
+        recorded = len(bag["/position"])
+    found = re.search(r"warning: (\d+) messages of /position were received, and not", capsys.readouterr().err)
+    assert found is not None
+    assert recorded + int(found[1]) == 70
+    assert recorded >= 20
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("name", ["drive", "drive.db3"])
 def test_what_waits_at_the_end_is_recorded(
@@ -307,6 +339,7 @@ def test_what_waits_at_the_end_is_recorded(
     name: str,
 ) -> None:
     monkeypatch.setattr("ifgen_tools.bag.recording.record._ON_ITS_WAY", 0.0)
+    monkeypatch.setattr("ifgen_tools.bag.recording.recorder._AT_ONCE", 100)
     talk = Talk(talker.create_publisher(Point, "position", 1000), points(900))
 
     def is_done(recording: Recording) -> bool:

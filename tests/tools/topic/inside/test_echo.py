@@ -136,8 +136,9 @@ def test_what_is_wrong_is_named(ifgen: Run, node: Node, words: list[str], code: 
 def test_another_type_comes_later(ifgen: Run, node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("ifgen_tools.topic.listening._LOOK_EVERY", 0.01)
     threading.Timer(0.1, lambda: node.create_publisher(Float64, "late", 1)).start()
-    done = ifgen("topic", "echo", "/late", "std_msgs/msg/String", "--timeout", "0.6")
-    assert done.err == "WARNING: /late is published as std_msgs/msg/Float64, not as std_msgs/msg/String\n"
+    done = ifgen("topic", "echo", "/late", "std_msgs/msg/String", "--timeout", "5")
+    refusal = "error: the topic '/late' has the type std_msgs/msg/Float64, not std_msgs/msg/String\n"
+    assert (done.code, done.err) == (1, f"{refusal}  = help: see `ifgen topic type /late`\n")
 
 
 def test_two_types_on_a_topic(ifgen: Run, node: Node) -> None:

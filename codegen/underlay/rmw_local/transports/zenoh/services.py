@@ -9,9 +9,9 @@ from functools import partial
 from typing import Any, Final, Protocol
 
 import zenoh
+from ifgen_runtime.printable import printable
 from zenoh import ConsolidationMode, Locality, QueryTarget
 
-from rmw_local.notices import printable
 from rmw_local.transports.background import Background
 from rmw_local.transports.seam import Ask, OnOver
 from rmw_local.transports.zenoh import attachments
