@@ -67,6 +67,20 @@ def test_what_is_right_is_generated(workspace: Path, ifgen: Run) -> None:
     assert ifgen("generate", "ws", "-o", "out", "--keep-going", "--locked").code == 2
 
 
+@pytest.mark.parametrize("bad", ["int33 x", "absent_msgs/Foo x", "std_msgs/Nope x"])
+def test_a_package_that_loses_everything_does_not_come_back(
+    bad: str, tmp_path: Path, ifgen: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Who needs it is left out, too: it is found nowhere, although its files are there."""
+    monkeypatch.chdir(tmp_path)
+    files = {"a_msgs/msg/A.msg": bad, "b_msgs/msg/B.msg": "a_msgs/A a", "c_msgs/msg/C.msg": "int32 x"}
+    write({name: f"{text}\n" for name, text in files.items()}, tmp_path / "ws")
+    done = ifgen("generate", "ws", "-o", "out", "--keep-going")
+    left = [line.split(":")[1].strip() for line in done.err.splitlines() if line.startswith("left out: ")]
+    assert (done.code, sorted(left)) == (1, ["a_msgs/msg/A", "b_msgs/msg/B"])
+    assert {path.name for path in Path("out").iterdir()} == {"c_msgs"}
+
+
 def test_nothing_right_is_a_failure(workspace: Path, ifgen: Run) -> None:
     done = ifgen("generate", "ws/a_msgs/msg/Bad.msg", "-o", "out", "--keep-going")
     assert (done.code, "absent_msgs" in done.err, Path("out").exists()) == (1, True, False)

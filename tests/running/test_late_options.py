@@ -21,6 +21,7 @@ __all__ = ["cache_folder", "clean_environment", "ifgen"]
         ("-m a.b --transport auto", "-m a.b", {"--transport": "auto"}),
         ("pkg node --transport local -r x:=y", "pkg node -r x:=y", {"--transport": "local"}),
         ("a.py --transport bus", "a.py --transport bus", {}),
+        ("a.py --transport lcal", "a.py", {"--transport": "lcal"}),
         ("a.py --transport", "a.py --transport", {}),
         ("a.py -- --transport local", "a.py -- --transport local", {}),
         ("a.py --ros-args --transport local", "a.py --ros-args --transport local", {}),
@@ -49,3 +50,5 @@ def test_the_command_says_what_it_takes(ifgen: Run, tmp_path: Path) -> None:
     ran = ifgen("run", "a.py", "--transport", "rclpy", "--lockstep")
     assert "note: `ifgen run` takes --transport rclpy --lockstep as its own" in ran.err
     assert "the real rclpy has no lockstep" in ran.err
+    ran = ifgen("run", "a.py", "--transport", "rclp")
+    assert "there is no transport 'rclp', only local, rclpy or auto" in ran.err

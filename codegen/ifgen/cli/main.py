@@ -26,7 +26,7 @@ from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import transport as transport_option
 from ifgen.config.settings import settle
-from ifgen.diagnostics import Diagnostic, printable, shown_path
+from ifgen.diagnostics import Diagnostic, UsageError, printable, shown_path
 from ifgen.writing.interruption import Terminated, held, terminable
 
 if TYPE_CHECKING:
@@ -359,6 +359,12 @@ def _late_options(program: Sequence[str]) -> tuple[Sequence[str], Mapping[str, s
         if context.get_parameter_source(name) is ParameterSource.COMMANDLINE
     ]
     words, late = late_options.take(program, given)
+    if (transport := late.get("--transport", "auto")) not in late_options.TRANSPORTS:
+        expected = f"{', '.join(late_options.TRANSPORTS[:-1])} or {late_options.TRANSPORTS[-1]}"
+        advice = "put `--` before the arguments of the program if it has an option of this name"
+        raise UsageError(
+            [Diagnostic("no-transport", f"there is no transport '{transport}', only {expected}", help=advice)]
+        )
     if late:
         taken = " ".join(" ".join(filter(None, each)) for each in late.items())
         print(

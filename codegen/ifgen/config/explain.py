@@ -77,6 +77,7 @@ _EXPECTED = {
     "distributions": 'a name with {package} in it, such as "acme-{package}"',
     "requirements": 'a table of what pip installs, such as {nav2_msgs = "acme-nav2-msgs>=1.2"}',
     "only": 'a list of patterns, such as ["demo_msgs", "*/srv/*"]',
+    "exclude": 'a list of packages or patterns, such as ["demo_msgs", "*/srv/*"]',
 }
 
 

@@ -62,6 +62,8 @@ def _type_help(problem: BadType, text: str) -> str:
         return _SIZE_HELP if text.endswith("]") else _BOUND_HELP
     if base in _FOREIGN_TYPES:
         return f"write {_FOREIGN_TYPES[base]}"
+    if re.fullmatch(r"\w+::(msg::)?\w+", base):
+        return f"write `{base.replace('::msg::', '/').replace('::', '/')}`; `ifgen check --fix` does so"
     if text.count("[") > 1:
         return "arrays have one dimension: make it longer, or define a message for a row"
     if text.endswith("[") or "]" in text or "[" in base:

@@ -58,10 +58,12 @@ def resolve_what_can_be(inputs: Inputs) -> tuple[Job, tuple[LeftOut, ...], tuple
     """
     leaving = _Leaving(inputs)
     found: list[Diagnostic] = []
+    first: Sequence[Diagnostic] = ()
     while True:
         try:
             job = resolution.resolve(leaving.inputs())
         except InputError as error:
+            first = first or error.diagnostics
             if not inputs.keep_going and not inputs.excluded:
                 raise
             wrong = leaving.mistakes(error.diagnostics)
@@ -71,7 +73,7 @@ def resolve_what_can_be(inputs: Inputs) -> tuple[Job, tuple[LeftOut, ...], tuple
             before = len(leaving.reasons)
             leaving.leave_out(error.diagnostics)
             if len(leaving.reasons) == before or leaving.is_empty():
-                raise InputError(found or error.diagnostics) from None
+                raise InputError(found or first) from None
         else:
             return job, leaving.left_out(), tuple(found)
 
@@ -101,7 +103,8 @@ class _Leaving:
         search = self._inputs.search
         # Dependencies too: a mistake in one of those is a mistake of everything that needs it.
         others = (search.package(name) for name in names - {package.name for package in own})
-        hidden = (replace(p, files=(), nodes=()) for p in own if p.name in self.reasons)
+        left = {package.name for package in own} - {package.name for package in kept}
+        hidden = (replace(p, files=(), nodes=()) for p in own if p.name in left)
         known = (*kept, *hidden, *(_without(package, self.reasons) for package in others if package))
         return replace(self._inputs, packages=kept, search=search.knowing(known))
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from contextlib import suppress
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Final
 
-_TRANSPORTS: Final = ("local", "rclpy", "auto")
+TRANSPORTS: Final = ("local", "rclpy", "auto")
 _FLAGS: Final = ("--lockstep", "--generate")
 _ENDS: Final = ("--", "--ros-args")
 
@@ -15,9 +16,9 @@ _ENDS: Final = ("--", "--ros-args")
 def take(words: Sequence[str], given: Collection[str]) -> tuple[list[str], dict[str, str]]:
     """Separate the words of programs from options of `ifgen run` that are among them; returns both.
 
-    `--transport` with a transport, `--lockstep` and `--generate` count, up to `--` or `--ros-args` of each
-    program. None counts that is among those `given` before the programs, or that the file of its program has
-    in quotes: then it is the program's.
+    `--transport` with a transport, or with a word that is spelled like one, `--lockstep` and `--generate` count,
+    up to `--` or `--ros-args` of each program. None counts that is among those `given` before the programs, or
+    that the file of its program has in quotes: then it is the program's.
     """
     left: list[str] = []
     found: dict[str, str] = {}
@@ -33,7 +34,7 @@ def take(words: Sequence[str], given: Collection[str]) -> tuple[list[str], dict[
             is_open = False
         elif is_open and name not in given and not _is_known(name, text):
             value = value if equals else "".join(words[index + 1 : index + 2])
-            if name == "--transport" and value in _TRANSPORTS:
+            if name == "--transport" and get_close_matches(value, TRANSPORTS, n=1):
                 found[name] = value
                 if not equals:
                     next(rest)

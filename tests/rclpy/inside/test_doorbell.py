@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -81,6 +82,23 @@ def test_who_counts_nodes_is_answered_for_each_domain(base: Path, monkeypatch: p
         bell.close()
     for thread in threads:
         thread.join(10)
+
+
+def test_stray_datagrams_end_nothing(base: Path) -> None:
+    bell = Doorbell(7)
+    thread, rung = rings(bell)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as stray:  # without a name of its own
+        for data in (b"", b"n", b"r", b"\0", b"nn", bytes(200)):
+            stray.sendto(data, str(next((base / "7").glob("*.bell"))))
+    before = len(rung)
+    assert Doorbell(7).ring() == 1
+    deadline = time.monotonic() + 10
+    while len(rung) == before and time.monotonic() < deadline:
+        time.sleep(0.01)
+    assert len(rung) > before, "it still hears who comes"
+    bell.close()
+    thread.join(10)
+    assert not thread.is_alive()
 
 
 def test_whoever_is_too_busy_to_answer_counts_as_one_node_at_least(

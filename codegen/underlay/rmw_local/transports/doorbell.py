@@ -75,7 +75,7 @@ class Doorbell:
                 return
             if received == _RING:  # what is neither this nor COUNT is not ours
                 rung()
-            elif received == COUNT:
+            elif received == COUNT and address:  # who sends without a name cannot be answered
                 with suppress(OSError):
                     self._socket.sendto(b"%d" % count_nodes(), _socket.MSG_DONTWAIT, address)
 
