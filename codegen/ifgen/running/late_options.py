@@ -16,9 +16,9 @@ _ENDS: Final = ("--", "--ros-args")
 def take(words: Sequence[str], given: Collection[str]) -> tuple[list[str], dict[str, str]]:
     """Separate the words of programs from options of `ifgen run` that are among them; returns both.
 
-    `--transport` with a transport, or a word that is spelled like one, `--lockstep` and `--generate` count, up
-    to `--` or `--ros-args` of each program. None counts that is among those `given` before the programs, or that
-    the file of its program has in quotes: then it is the program's.
+    `--transport` with a transport or a word spelled like one, `--lockstep` and `--generate` count, up to
+    `--` or `--ros-args` of each program. None counts that is among those `given` before the programs, or
+    that the file of its program has in quotes: then it is the program's.
     """
     left: list[str] = []
     found: dict[str, str] = {}
