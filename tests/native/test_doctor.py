@@ -175,9 +175,8 @@ def test_no_rclpy(monkeypatch: pytest.MonkeyPatch) -> None:
             marks=pytest.mark.slow,
         ),
         ({"ZENOH_SESSION_CONFIG_URI": "no.json5"}, "no.json5 cannot be used: No such file"),
-        pytest.param({"ROS_DOMAIN_ID": "x"}, "not reached (Zenoh 1.10.2) -> ", marks=pytest.mark.slow),
     ],
-    ids=["here", "off", "router", "file", "domain"],
+    ids=["here", "off", "router", "file"],
 )
 def test_who_is_reached_and_why_not(
     environment: dict[str, str], words: str, monkeypatch: pytest.MonkeyPatch

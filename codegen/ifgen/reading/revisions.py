@@ -152,7 +152,7 @@ def _commit(root: str, name: str) -> str:
     raise UsageError([_no_revision(root, name)])
 
 
-def _has_no_commit(root: str) -> bool:
+def has_no_commit(root: str) -> bool:
     return _git(root, *_verify("HEAD")).returncode != 0
 
 
@@ -263,7 +263,7 @@ def _no_revision(root: str, name: str) -> Diagnostic:
     shallow = _git(root, "rev-parse", "--is-shallow-repository")
     if shallow.stdout.strip() == b"true":
         advice = "this clone is shallow: `git fetch --unshallow`, or `fetch-depth: 0` of actions/checkout"
-    elif _has_no_commit(root):
+    elif has_no_commit(root):
         advice = "the repository has no commit yet"
     else:
         advice = "`git log --oneline --all` lists revisions; one of a server may need `git fetch`"

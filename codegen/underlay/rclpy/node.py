@@ -61,7 +61,7 @@ from rclpy.time_source import TimeSource
 from rclpy.timer import Rate, Timer
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.type_description_service import TypeDescriptionService
-from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type, class_of
+from rclpy.type_support import check_is_valid_msg_type, check_is_valid_srv_type, _class_of
 from rclpy.utilities import get_default_context
 from rclpy.validate_full_topic_name import validate_full_topic_name
 from rclpy.validate_namespace import validate_namespace
@@ -770,7 +770,7 @@ class Node:
         profile = self._validate_qos_or_depth_parameter(qos_profile)
         self.__declare_qos_overrides(Publisher, topic, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
-        msg_type = class_of(msg_type)
+        msg_type = _class_of(msg_type)
         handle = self.__create_handle(_rclpy.Publisher, msg_type, topic, profile, is_service=False)
         try:
             publisher = publisher_class(
@@ -882,7 +882,7 @@ class Node:
         self.__declare_qos_overrides(Subscription, topic, profile, qos_overriding_options)
         group = callback_group or self.default_callback_group
         check_is_valid_msg_type(msg_type)
-        msg_type = class_of(msg_type)
+        msg_type = _class_of(msg_type)
         handle = self.__create_handle(_rclpy.Subscription, msg_type, topic, profile, is_service=False)
         try:
             subscription = Subscription(

@@ -170,7 +170,7 @@ class Future(Generic[T]):
                 warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
 
-def explained(error: Exception) -> Exception:
+def _explained(error: Exception) -> Exception:
     """The error that a callback has raised, with what to do where it looked for asyncio."""
     if type(error) is not RuntimeError or error.args != ("no running event loop",):
         return error
@@ -242,7 +242,7 @@ class Task(_FutureOf[T]):
             self.set_result(end.value)
         except Exception as error:
             self._handler = None
-            self.set_exception(explained(error))
+            self.set_exception(_explained(error))
         else:
             self._handler = None
             self.set_result(result)

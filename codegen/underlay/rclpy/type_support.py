@@ -57,7 +57,7 @@ def check_is_valid_srv_type(srv_type: Any) -> None:
         )
 
 
-def class_of(msg_type: Any) -> Any:
+def _class_of(msg_type: Any) -> Any:
     """The class, where a message is given in its place: upstream takes that, too."""
     return msg_type if isinstance(msg_type, type) else msg_type.__class__
 

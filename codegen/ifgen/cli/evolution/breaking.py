@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     type=click.Choice(["source", "hash", "wire"]),
     help="What no change may break. Default: `breaking` in [tool.ifgen], else source.",
 )
+@click.option(
+    "--allow-no-commit", is_flag=True, help="Succeed where the repository has no commit yet: for hooks."
+)
 @include_option
 @format_option
 @quiet_option
@@ -47,6 +50,7 @@ def breaking(
     paths: tuple[Path, ...],
     against: str,
     category: str | None,
+    allow_no_commit: bool,
     include: tuple[Path, ...],
     format_: str,
     quiet: bool,
@@ -64,7 +68,11 @@ def breaking(
     PATH is as for `ifgen check`. Exits with 1 if a change breaks the category. `ifgen rules` lists the rules,
     which `ignore` and `per_file_ignores` in [tool.ifgen] and comments silence as they do warnings.
     """  # noqa: D301 - the backspace is for click, which keeps the lines after it as they are
+    from ifgen.reading import revisions
+
     settings = settle(paths, None, include).with_paths()
+    if allow_no_commit and revisions.has_no_commit(Path.cwd()):
+        return 0
     with without_garbage_collection():
         return _compared(settings, against, category, format_, quiet)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rclpy._executor.ready_queue import ReadyQueue
 from rclpy._executor.tasks import TaskList, Work, run, run_in_pool
 from rclpy._executor.watch import Watch
-from rclpy.task import Task, explained
+from rclpy.task import Task, _explained
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
@@ -69,7 +69,7 @@ class CallbackRunner:
             else:
                 unfinished = watch.call(taken, executor)
         except RuntimeError as error:
-            if (fault := explained(error)) is not error:
+            if (fault := _explained(error)) is not error:
                 raise fault from error
             raise
         finally:
@@ -82,7 +82,7 @@ class CallbackRunner:
             except StopIteration:
                 return
             except RuntimeError as error:
-                if (fault := explained(error)) is not error:
+                if (fault := _explained(error)) is not error:
                     raise fault from error
                 raise
             task = Task(coroutine, executor=executor)
