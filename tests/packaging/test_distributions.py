@@ -72,7 +72,7 @@ def test_the_wheels_have_everything_and_shadow_nothing(wheels: tuple[Path, Path]
 
 def test_a_robot_gets_no_tools(wheels: tuple[Path, Path]) -> None:
     toolkit, runtime = map(requirements, wheels)
-    assert set(runtime) == {"numpy", "pyyaml"}
+    assert set(runtime) == {"eclipse-zenoh", "numpy", "pyyaml", "xxhash"}
     assert toolkit.keys() >= TOOLS
     assert toolkit["ifgen-ros-runtime"] == "==0.1.0"
 

@@ -101,7 +101,9 @@ def test_a_robot_needs_no_tools(built: Path, tmp_path: Path) -> None:
     )
     listed = run(sys.executable, "-m", "pip", "--python", python, "list", "--format=freeze", cwd=tmp_path)
     assert {line.split("==")[0].lower() for line in listed.splitlines()} == {
+        "eclipse-zenoh",
         "ifgen-ros-runtime",
         "numpy",
         "pyyaml",
+        "xxhash",
     }

@@ -83,12 +83,12 @@ def built(wheels: tuple[Path, Path], tmp_path_factory: pytest.TempPathFactory) -
 
 @pytest.fixture(scope="module")
 def plain(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """An environment with these, and numpy and PyYAML of this one: nothing else, and in particular no ROS."""
+    """An environment with these, and what the runtime needs of this one: nothing else, in particular no ROS."""
     folder = tmp_path_factory.mktemp("plain")
     python = environment(folder / "venv", behind=folder / "site")
     site = Path(sysconfig.get_path("purelib"))
     (folder / "site").mkdir()
-    for pattern in ("numpy*", "yaml", "_yaml", "[Pp][Yy][Yy][Aa][Mm][Ll]-*"):
+    for pattern in ("numpy*", "yaml", "_yaml", "[Pp][Yy][Yy][Aa][Mm][Ll]-*", "*zenoh*", "xxhash*"):
         for found in site.glob(pattern):
             (folder / "site" / found.name).symlink_to(found)
     install(python, "--no-index", "--find-links", built, *(f"acme-{p.replace('_', '-')}" for p in PACKAGES))

@@ -152,7 +152,8 @@ def _commit(root: str, name: str) -> str:
     raise UsageError([_no_revision(root, name)])
 
 
-def has_no_commit(root: str) -> bool:
+def has_no_commit(root: Path | str) -> bool:
+    """Whether nothing was ever committed in the repository around a folder, or there is none."""
     return _git(root, *_verify("HEAD")).returncode != 0
 
 
