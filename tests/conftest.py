@@ -21,6 +21,7 @@ from ifgen_pytest.domains import own_domain
 _kept = ExitStack()  # until this process ends
 os.environ["ROS_DOMAIN_ID"] = str(_kept.enter_context(own_domain()))
 os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+os.environ["IFGEN_OTHER_DOMAINS"] = "0"  # those of other tests, which tools would tell of
 
 # Shells make background programs ignore Ctrl-C, and their children too, which tests of Ctrl-C start.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:

@@ -67,8 +67,8 @@ class Nodes:
 def elsewhere(transport: str, domain: int) -> str:
     """Say where nodes run, other than on this transport in this domain; empty if none are found.
 
-    Other domains are named only if the other transport has nobody in this domain. None are named under
-    ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, where no other process can be seen.
+    Other domains are named only if the other transport has nobody in this domain, and IFGEN_OTHER_DOMAINS is
+    not 0. Nothing is named under ROS_AUTOMATIC_DISCOVERY_RANGE=OFF, where no other process can be seen.
     """
     if _is_off():
         return ""
@@ -76,6 +76,8 @@ def elsewhere(transport: str, domain: int) -> str:
     found = {(other, number): nodes for number, nodes in _everybody(other).items()}
     if (other, domain) in found:
         return _sentence((other, domain), found[other, domain], transport, domain)
+    if os.environ.get("IFGEN_OTHER_DOMAINS") == "0":
+        return ""
     mine = _everybody(transport)
     found |= {(transport, number): nodes for number, nodes in mine.items() if number != domain}
     most = sorted(found, key=lambda place: -found[place].number)[:_MOST]

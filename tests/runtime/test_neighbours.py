@@ -96,6 +96,8 @@ def test_sentences_name_the_way(proc: Path, monkeypatch: pytest.MonkeyPatch) -> 
     start(proc, 1, ports_of(4))
     assert neighbours.elsewhere("rclpy", 4) == "2 nodes run on the local transport: --transport local"
     assert neighbours.elsewhere("local", 4) == "at least 1 node runs on the real rclpy: --transport rclpy"
+    assert neighbours.elsewhere("local", 0) == "", "tests switch the other domains off"
+    monkeypatch.delenv("IFGEN_OTHER_DOMAINS")
     assert neighbours.elsewhere("local", 0) == (
         "2 nodes run on the local transport in domain 4: ROS_DOMAIN_ID=4; "
         "at least 1 node runs on the real rclpy in domain 4: ROS_DOMAIN_ID=4 and --transport rclpy"
