@@ -260,3 +260,13 @@ def test_half_a_surrogate_pair_in_any_text(classes: Classes, path: str, value: A
     assert isinstance(error, UnicodeEncodeError)
     assert (error.path, error.object, error.start) == (path, "\ud800", 0)
     assert str(pickle.loads(pickle.dumps(error))) == str(error)
+
+
+def test_another_field_that_is_wrong_first_is_no_matter_of_texts() -> None:
+    from lifecycle_msgs.msg import Transition
+
+    wrong = Transition(label="\ud800")
+    wrong.id = {}  # type: ignore[assignment]
+    with pytest.raises(SerializationError, match=r"Transition\.id: expected int, got dict") as raised:
+        serialize(wrong)
+    assert not isinstance(raised.value, UnicodeEncodeError)

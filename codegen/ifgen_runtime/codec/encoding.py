@@ -35,7 +35,7 @@ def encode_any(message: Any) -> bytes:
     try:
         _message(out, message, cls)
     except Problem as problem:
-        path, failure = cls.__name__ + problem.place, problem.__context__
+        path, failure = cls.__name__ + problem.place, problem.__cause__
         if isinstance(failure, UnicodeEncodeError):
             raise TextEncodingError(path, problem.text, *failure.args) from None
         raise SerializationError(path, problem.text) from None
@@ -196,7 +196,7 @@ def text_wire(value: Any, type_: Text) -> bytes:
             return wstring_wire(str(text))
         encoded = text.encode()
     except UnicodeEncodeError as failure:
-        raise Problem(f"half of a surrogate pair at character {failure.start} cannot be sent") from None
+        raise Problem(f"half of a surrogate pair at character {failure.start} cannot be sent") from failure
     if 0 in encoded:
         raise Problem(f"NUL at character {text.index(chr(0))}: a string ends there on the wire")
     return pack("<I", len(encoded) + 1) + encoded + b"\0"

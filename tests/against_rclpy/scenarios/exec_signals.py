@@ -8,7 +8,12 @@ import threading
 
 import rclpy
 from rclpy.context import Context
-from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.executors import (
+    Executor,
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+)
 from rclpy.signals import (
     SignalHandlerGuardCondition,
     SignalHandlerOptions,
@@ -21,6 +26,16 @@ from transcript import attempt, until
 
 def kill_soon(number: int, delay: float = 0.2) -> None:
     threading.Timer(delay, lambda: os.kill(os.getpid(), number)).start()
+
+
+def spin(executor: Executor) -> None:
+    """Spin. The real one notices in one place or another that its context has gone."""
+    try:
+        executor.spin()
+    except Exception as error:
+        if "the given context is not valid" in str(error):
+            raise ExternalShutdownException from None
+        raise
 
 
 def main() -> None:
@@ -49,7 +64,7 @@ def main() -> None:
             guard = SignalHandlerGuardCondition()
             executor.add_node(node)
             kill_soon(number)
-            attempt(f"{number.name} {kind.__name__} spin", executor.spin)
+            attempt(f"{number.name} {kind.__name__} spin", lambda: spin(executor))
             until(lambda: not (rclpy.ok() or other.ok()))
             print(rclpy.ok(), other.ok(), get_current_signal_handlers_options())
             attempt("shutdown", rclpy.shutdown)
