@@ -54,9 +54,10 @@ class ServerGoneError(ConnectionError):
 class Problem(Exception):
     """A mistake, on its way up to a caller that knows the path. It never leaves this package."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, failure: UnicodeEncodeError | None = None) -> None:
         super().__init__(text)
         self.text = text
+        self.failure = failure
         self.place = ""
 
     def at(self, place: str) -> Problem:

@@ -35,8 +35,8 @@ def encode_any(message: Any) -> bytes:
     try:
         _message(out, message, cls)
     except Problem as problem:
-        path, failure = cls.__name__ + problem.place, problem.__cause__
-        if isinstance(failure, UnicodeEncodeError):
+        path, failure = cls.__name__ + problem.place, problem.failure
+        if failure is not None:
             raise TextEncodingError(path, problem.text, *failure.args) from None
         raise SerializationError(path, problem.text) from None
     return bytes(out)
@@ -196,7 +196,8 @@ def text_wire(value: Any, type_: Text) -> bytes:
             return wstring_wire(str(text))
         encoded = text.encode()
     except UnicodeEncodeError as failure:
-        raise Problem(f"half of a surrogate pair at character {failure.start} cannot be sent") from failure
+        said = f"half of a surrogate pair at character {failure.start} cannot be sent"
+        raise Problem(said, failure) from None
     if 0 in encoded:
         raise Problem(f"NUL at character {text.index(chr(0))}: a string ends there on the wire")
     return pack("<I", len(encoded) + 1) + encoded + b"\0"
