@@ -126,7 +126,7 @@ def beside(domain: int, is_virtual: bool) -> Generator[None]:
         from rmw_local.virtual_time import virtual_time
         with virtual_time() if sys.argv[2] else nullcontext():
             Participant(int(sys.argv[1])).create_node("other", "/")
-            print()
+            print(flush=True)
             sys.stdin.read()
     """
     command = [sys.executable, "-c", program, str(domain), "yes" if is_virtual else ""]
