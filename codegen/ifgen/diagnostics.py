@@ -149,8 +149,9 @@ def shown_character(character: str) -> str:
         return "    "
     if character < " ":
         return chr(0x2400 + ord(character))  # the picture of a control character: U+241B for an escape
-    category = unicodedata.category(character)
-    return "\N{REPLACEMENT CHARACTER}" if category in {"Cc", "Cf", "Cs", "Zl", "Zp"} else character
+    steers = unicodedata.category(character) in {"Cc", "Cf", "Cs", "Zl", "Zp"}
+    is_none = ord(character) & 0xFFFE == 0xFFFE  # U+FFFE and its like, which no text may have
+    return "\N{REPLACEMENT CHARACTER}" if steers or is_none else character
 
 
 def printable(text: str) -> str:

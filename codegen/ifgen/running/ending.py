@@ -79,7 +79,10 @@ def _advice(error: ImportError) -> str:
         parent, _, name = (error.name or "").rpartition(".")
         return _inside(parent, name) if parent in sys.modules else _advice_on_package(error)
     wrong = _NO_SUCH_NAME.match(str(error))
-    return _inside(wrong[2], wrong[1], is_suggested=hasattr(error, "name_from")) if wrong else ""
+    if not wrong:
+        return ""
+    # Python looks for suggestions in the outermost package only.
+    return _inside(wrong[2], wrong[1], is_suggested=hasattr(error, "name_from") and "." not in wrong[2])
 
 
 def _inside(module_name: str, wrong: str, *, is_suggested: bool = False) -> str:
