@@ -8,7 +8,8 @@ BIN := $(VENV)/bin
 TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
 # Tests that the codec in C and the generated functions must pass alike: `make test` runs them with each, the longest first.
 # Tests that use rclpy in their own process: one session for each rclpy.
-INSIDE := $(wildcard tests/*/inside tests/*/*/inside)
+# Those of rclpy have one of their own, because nodes that they maltreat may outlive a test.
+INSIDE := $(filter-out tests/rclpy/inside,$(wildcard tests/*/inside tests/*/*/inside))
 BOTH_CODECS := $(addprefix tests/,against_rosidl/test_classes.py \
 	$(addprefix codec/test_,$(addsuffix .py,hostile_input large refusals round_trip views wire)) runtime/test_message_classes.py)
 # The packages that nodes import besides rclpy.
@@ -41,11 +42,13 @@ demo: $(VENV)/.run  ## see ifgen work on real interfaces, and a humanoid that wa
 test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as well)
 	$(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone"
 	IFGEN_CODEC=python $(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone" $(BOTH_CODECS)
+	$(BIN)/pytest -n auto --dist worksteal --transport local -m "not slow and not alone" tests/rclpy/inside
 	$(BIN)/pytest -n auto --dist worksteal --transport local -m "not slow and not alone" $(INSIDE)
 	$(BIN)/pytest -n auto --transport both generated tests/libraries/inside/test_filters.py
 
 test-slow: $(VENV)/.test  ## run the tests that take longer
 	$(BIN)/pytest -n auto --dist worksteal -m "slow and not alone"
+	$(BIN)/pytest -n auto --dist worksteal --transport local -m "slow and not alone" tests/rclpy/inside
 	$(BIN)/pytest -n auto --dist worksteal --transport local -m "slow and not alone" $(INSIDE)
 	IFGEN_CODEC=python IFGEN_CASES=400 $(BIN)/pytest -n auto --transport local $(addprefix tests/rclpy/inside/,\
 		mismatched_topics test_mismatch_services.py test_hostile_bytes.py)
