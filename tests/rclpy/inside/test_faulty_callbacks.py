@@ -128,8 +128,8 @@ def _succeed(goal: Any) -> Any:
 
 def _goal_of(scene: Scene, **callbacks: Any) -> Any:
     execute = callbacks.pop("execute_callback", _succeed)
-    ActionServer(scene.node, Fibonacci, "count_faultily", execute, callback_group=scene.group, **callbacks)
-    client = ActionClient(scene.client_node, Fibonacci, "count_faultily", callback_group=scene.group)
+    ActionServer(scene.node, Fibonacci, "count", execute, callback_group=scene.group, **callbacks)
+    client = ActionClient(scene.client_node, Fibonacci, "count", callback_group=scene.group)
     scene.until(client.server_is_ready)
     return scene.answer(client.send_goal_async(Fibonacci.Goal(order=3)))
 
