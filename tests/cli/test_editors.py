@@ -132,8 +132,9 @@ def test_pyright_has_nothing_to_say_of_a_program_that_runs(ifgen: Run) -> None:
 def test_tools_that_import_find_everything_by_the_ways_of_the_page(ifgen: Run, demo_msgs: Path) -> None:
     ifgen("generate", demo_msgs)
     ifgen("typings")
-    shown = ifgen("run", "--transport", "local", "-m", "pydoc", "demo_msgs.msg").out
-    assert "Help on package demo_msgs.msg" in shown
+    command = [sys.executable, "-m", "ifgen", "run", "--transport", "local", "-m", "pydoc", "demo_msgs.msg"]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert "Help on package demo_msgs.msg" in ran.stdout, ran.stderr
     folders = ifgen("paths", "--typings", "none").out.splitlines()
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(folders)}
     command = [sys.executable, "-c", "import demo_msgs.msg, rclpy.node, tf2_ros; print(rclpy.node.__file__)"]

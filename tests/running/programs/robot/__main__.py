@@ -2,6 +2,8 @@
 
 import sys
 
+import helper  # noqa: F401
+
 from .limits import SPEED
 
 print("robot itself", SPEED, sys.argv[1:], type(__spec__.name), __spec__.name)
