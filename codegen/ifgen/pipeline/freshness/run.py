@@ -6,11 +6,11 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import TypeVar
 
+from ifgen import signals
 from ifgen.pipeline.freshness import notes
 from ifgen.pipeline.freshness.comparison import Unchanged, unchanged_since
 from ifgen.pipeline.freshness.state import state_of
 from ifgen.pipeline.values import Inputs, Made
-from ifgen.writing import interruption
 
 Done = TypeVar("Done")
 
@@ -29,7 +29,7 @@ def unless_fresh(
     state = state_of(inputs, noted)
     unchanged = unchanged_since(noted, state)
     made = unchanged.done or make(inputs, unchanged)
-    with prepare(inputs, made) as finish, interruption.held("all files had been written"):
+    with prepare(inputs, made) as finish, signals.delay_interrupt("all files had been written"):
         done = finish()
         if made.job is not None:
             from ifgen.pipeline.freshness.noting import note  # nothing to note if nothing has changed
