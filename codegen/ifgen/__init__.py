@@ -7,10 +7,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ifgen.activation import activate
     from ifgen.diagnostics import InputError
     from ifgen.diagnostics import InputError as InterfaceError
     from ifgen.pipeline.stages import check, generate, load, type_hash
-    from ifgen.running.project import activate
 
     __version__: str
 
@@ -20,7 +20,7 @@ _PLACES = {
     "InputError": ("diagnostics", "InputError"),
     "InterfaceError": ("diagnostics", "InputError"),  # its earlier name: programs catch it
     "__version__": ("resources", "VERSION"),
-    "activate": ("running.project", "activate"),
+    "activate": ("activation", "activate"),
 }
 
 

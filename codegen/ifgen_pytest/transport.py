@@ -52,9 +52,9 @@ def activate(transport: str, arguments: list[str]) -> str:
 
     Returns which transport it is. Raises UsageError if it cannot.
     """
+    from ifgen.activation import ActivationError, folder_around, put_on_path
     from ifgen.config.settings import settle
     from ifgen.diagnostics import UsageError
-    from ifgen.running.activation import ActivationError, folder_around, put_on_path
 
     try:
         around = (folder_around(Path(word.partition("::")[0])) for word in arguments if word[:1] != "-")
@@ -103,7 +103,7 @@ def _without_option(arguments: list[str]) -> list[str]:
 
 def _no_rclpy() -> str | None:
     """The reason why there is no real rclpy; None if there is one. Changes and imports nothing."""
-    from ifgen.running.activation import ActivationError, put_on_path
+    from ifgen.activation import ActivationError, put_on_path
 
     before = list(sys.path)
     try:

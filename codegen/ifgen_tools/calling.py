@@ -8,8 +8,8 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import click
+from ifgen.command_kit.tool import ToolError, did_you_mean
 
-from ifgen_tools.errors import ToolError, did_you_mean
 from ifgen_tools.named import Named
 from ifgen_tools.types import interface_class
 

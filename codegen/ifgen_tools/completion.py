@@ -1,61 +1,26 @@
-"""What a shell gets at TAB: names of types, nodes, topics, services, actions and parameters.
+"""Completion at TAB: names in a running system, and of what can be run.
 
-A running system is asked for a short time. Whatever is wrong is no completion, and nothing is printed.
-Use it as `shell_complete=` at the argument that takes such a name.
+A running system is asked for a short time.
 """
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Generator, Iterable, Iterator
+import glob
+from collections.abc import Generator, Iterable, Iterator
 from contextlib import contextmanager
-from functools import wraps
-from typing import TYPE_CHECKING, Final, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 import click
+from ifgen.command_kit.completion import Items, completing, files
 
 if TYPE_CHECKING:
-    from click.shell_completion import CompletionItem
-
     from ifgen_tools.session import Session
 
 # Late imports: a shell waits at each TAB, and rclpy is found once the transport has been chosen.
 
 _PATIENCE: Final = 0.8
 """Seconds until a shell gets what is known so far, where nobody says when that is all."""
-
-_Complete: TypeAlias = "Callable[[click.Context, click.Parameter, str], list[CompletionItem]]"
-
-
-def _completing(names: Callable[[click.Context, str], Iterable[str]]) -> _Complete:
-    """Turn a function that yields candidates for a text into a completion callback of click."""
-
-    @wraps(names)
-    def complete(context: click.Context, _: click.Parameter, typed: str) -> list[CompletionItem]:
-        from click.shell_completion import CompletionItem
-
-        try:
-            with _silence():
-                found = sorted(set(names(context, typed)))
-        except (Exception, KeyboardInterrupt):  # in the middle of a line, nobody can do anything about it
-            return []
-        return [CompletionItem(name) for name in found if name.startswith(typed)]
-
-    return complete
-
-
-@contextmanager
-def _silence() -> Generator[None]:
-    """Drop what is written to stderr, also by libraries in C."""
-    kept = os.dup(2)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 @contextmanager
@@ -76,7 +41,7 @@ def _visible(names: Iterable[str], typed: str) -> Iterator[str]:
     return (name for name in names if is_hidden(typed) or not is_hidden(name))
 
 
-@_completing
+@completing
 def nodes(context: click.Context, typed: str) -> Iterator[str]:
     """Full names of nodes."""
     with _looking(context) as session:
@@ -84,7 +49,7 @@ def nodes(context: click.Context, typed: str) -> Iterator[str]:
     yield from _visible((f"{space.rstrip('/')}/{name}" for name, space in found), typed)
 
 
-@_completing
+@completing
 def topics(context: click.Context, typed: str) -> Iterator[str]:
     """Names of topics."""
     with _looking(context) as session:
@@ -92,7 +57,7 @@ def topics(context: click.Context, typed: str) -> Iterator[str]:
     yield from _visible((name for name, _ in found), typed)
 
 
-@_completing
+@completing
 def services(context: click.Context, typed: str) -> Iterator[str]:
     """Names of services."""
     with _looking(context) as session:
@@ -100,7 +65,7 @@ def services(context: click.Context, typed: str) -> Iterator[str]:
     yield from _visible((name for name, _ in found), typed)
 
 
-@_completing
+@completing
 def actions(context: click.Context, typed: str) -> Iterator[str]:
     """Names of actions."""
     with _looking(context) as session:
@@ -110,7 +75,7 @@ def actions(context: click.Context, typed: str) -> Iterator[str]:
     yield from _visible((name for name, _ in found), typed)
 
 
-@_completing
+@completing
 def parameters(context: click.Context, typed: str) -> Iterator[str]:
     """Names of the parameters of the node that is the argument before."""
     if len(context.params.get("pairs") or ()) % 2:
@@ -129,7 +94,7 @@ def parameters(context: click.Context, typed: str) -> Iterator[str]:
         yield from answer.result.names
 
 
-@_completing
+@completing
 def transitions(context: click.Context, _: str) -> Iterator[str]:
     """The transitions out of the present state of the node that is the argument before."""
     node = str(context.params["node"])
@@ -147,13 +112,75 @@ def transitions(context: click.Context, _: str) -> Iterator[str]:
         yield from (each.transition.label for each in answer.available_transitions)
 
 
-@_completing
+def programs(context: click.Context, parameter: click.Parameter, typed: str) -> Items:
+    """Files and packages, or the nodes of a package that is the word before, for `ifgen run`."""
+    from click.shell_completion import CompletionItem
+
+    names = _programs(context, parameter, typed)
+    if names and _present(context):
+        return names
+    # bash completes files itself only where there is nothing else.
+    here = sorted(file.name for file in Path().glob(f"{glob.escape(typed)}*") if file.is_file())
+    if not here:
+        return [*files(context, parameter, typed), *names]
+    users = [name for name in names if name.value not in _names_of_demo()]
+    return [CompletionItem(name) for name in here] + users if users else files(context, parameter, typed)
+
+
+def _present(context: click.Context) -> list[str]:
+    """The words of the program that is being typed."""
+    words: list[str] = list(context.params.get("program") or ())
+    while ":" in words:
+        words = words[words.index(":") + 1 :]
+    return words
+
+
+@completing
+def _programs(context: click.Context, typed: str) -> Iterable[str]:
+    from ifgen.config.settings import settle
+
+    from ifgen_tools.running import packages as finding
+
+    output, words = settle().output, _present(context)
+    if not words:
+        begun = _users_first(name for name in finding.names(output) if name.startswith(typed))
+        return [name for name in begun if (found := finding.find(name, output)) and found.executables]
+    package = finding.find(words[0], output) if len(words) == 1 and not Path(words[0]).exists() else None
+    return sorted(package.executables) if package else ()
+
+
+@completing
+def packages_to_run(_: click.Context, typed: str) -> Iterable[str]:
+    """Names of packages that are generated, sources here, or installed."""
+    from ifgen.config.settings import settle
+
+    from ifgen_tools.running import packages as finding
+
+    return _users_first(name for name in finding.names(settle().output) if name.startswith(typed))
+
+
+def _users_first(names: Iterable[str]) -> list[str]:
+    """The names of packages without those of our demo, unless there are no others."""
+    found = list(names)
+    return [name for name in found if name not in _names_of_demo()] or found
+
+
+def _names_of_demo() -> frozenset[str]:
+    from ifgen import resources
+    from ifgen.config.settings import settle
+
+    nodes = resources.bundled_nodes()
+    if not nodes.is_dir() or settle().output.resolve() == nodes.resolve():
+        return frozenset()
+    return frozenset(folder.name for folder in nodes.iterdir())
+
+
+@completing
 def launch_files(context: click.Context, _: str) -> Iterator[str]:
     """Names of packages, or the launch files of the package that is the word before."""
-    from pathlib import Path
-
     from ifgen.config.settings import settle
-    from ifgen.running.finding import packages as finding
+
+    from ifgen_tools.running import packages as finding
 
     words = [word for word in context.params.get("words") or () if ":=" not in word]
     output = settle().output
@@ -163,12 +190,11 @@ def launch_files(context: click.Context, _: str) -> Iterator[str]:
         yield from (file.name for file in package.share.rglob("*launch*") if file.is_file())
 
 
-def words_of_launch(context: click.Context, parameter: click.Parameter, typed: str) -> list[CompletionItem]:
+def words_of_launch(context: click.Context, parameter: click.Parameter, typed: str) -> Items:
     """Files, which the shell completes, and the names of packages and their launch files."""
-    from click.shell_completion import CompletionItem
-
-    files = [] if context.params.get("words") else [CompletionItem(typed, type="file")]
-    return [*files, *launch_files(context, parameter, typed)]
+    if context.params.get("words"):
+        return launch_files(context, parameter, typed)
+    return [*files(context, parameter, typed), *launch_files(context, parameter, typed)]
 
 
 def _types(kind: str | None, typed: str) -> Iterator[str]:
@@ -181,13 +207,13 @@ def _types(kind: str | None, typed: str) -> Iterator[str]:
             yield from (name for of, name in finding.types_of(package, search) if kind in {of, None})
 
 
-@_completing
+@completing
 def types(_: click.Context, typed: str) -> Iterator[str]:
     """Names of messages, services and actions."""
     yield from _types(None, typed)
 
 
-@_completing
+@completing
 def packages(_: click.Context, __: str) -> Iterator[str]:
     """Names of packages that have interfaces."""
     from ifgen_tools.interface import finding
@@ -195,19 +221,19 @@ def packages(_: click.Context, __: str) -> Iterator[str]:
     yield from finding.search_path(()).package_names()
 
 
-@_completing
+@completing
 def message_types(_: click.Context, typed: str) -> Iterator[str]:
     """Names of messages."""
     yield from _types("msg", typed)
 
 
-@_completing
+@completing
 def service_types(_: click.Context, typed: str) -> Iterator[str]:
     """Names of services' types."""
     yield from _types("srv", typed)
 
 
-@_completing
+@completing
 def action_types(_: click.Context, typed: str) -> Iterator[str]:
     """Names of actions' types."""
     yield from _types("action", typed)

@@ -7,8 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import click
-
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
 
 
 def condition(expression: str | None) -> Callable[[Any], bool]:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 
-from ifgen_tools.errors import Absent, did_you_mean
+from ifgen.command_kit.tool import Absent, did_you_mean
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,9 @@ import sys
 from typing import TYPE_CHECKING, Any, Final
 
 import click
+from ifgen.command_kit.tool import Absent, did_you_mean
 
 from ifgen_tools import discovery
-from ifgen_tools.errors import Absent, did_you_mean
 from ifgen_tools.names import full_name, is_hidden
 
 if TYPE_CHECKING:

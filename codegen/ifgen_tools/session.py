@@ -10,8 +10,9 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
+from ifgen.command_kit.tool import Absent, ToolError
+
 from ifgen_tools import discovery
-from ifgen_tools.errors import Absent, ToolError
 from ifgen_tools.lookout import Lookout
 
 if TYPE_CHECKING:
@@ -193,8 +194,8 @@ def activate(transport: TransportChoice) -> Transport:
 
     Raises ToolError if that is not possible.
     """
+    from ifgen.activation import ActivationError, put_on_path
     from ifgen.config.settings import settle
-    from ifgen.running.activation import ActivationError, put_on_path
 
     try:
         return put_on_path(transport, settle().output)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.errors import Absent, ToolError, did_you_mean
+from ifgen.command_kit.tool import Absent, ToolError, did_you_mean
 
 if TYPE_CHECKING:
     from rclpy.node import Node

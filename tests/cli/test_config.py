@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen.cli import report
+from ifgen.command_kit import report
 from ifgen.config import explain, model, toml_places
 from ifgen.config.customization import Customization
 from ifgen.config.settings import Settings, settle

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from ifgen.diagnostics import UsageError
-from ifgen.running.finding import packages
-from ifgen.running.run import split
+from ifgen_tools.running import packages
+from ifgen_tools.running.run import split
 
 from .conftest import Run, write
 
@@ -52,7 +52,7 @@ def test_a_node_of_sources_is_its_entry_point(sources: Path, tmp_path: Path) -> 
     assert (found.share, sorted(found.executables)) == (sources, ["other", "talker"])
     (words,) = split(["my_pkg", "talker", "--fast"], tmp_path / "generated")
     assert words == [
-        *("-m", "ifgen.running.finding.entry_point", "talker", str(sources), "my_pkg.talker:main", "--fast")
+        *("-m", "ifgen_tools.running.entry_point", "talker", str(sources), "my_pkg.talker:main", "--fast")
     ]
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen.cli import report
+from ifgen.command_kit import report
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
 
 POSE = Source(Path("demo_msgs/msg/Pose.msg"), "# A pose.\nfloat64 x\n\nfloat64 x\n")

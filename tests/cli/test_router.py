@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 from ifgen.config import installing
-from ifgen.running.router import is_on_this_machine, open_router
-from ifgen.running.router_configuration import configuration, endpoints_of
+from ifgen_tools.running.router import is_on_this_machine, open_router
+from ifgen_tools.running.router_configuration import configuration, endpoints_of
 
 from .conftest import Run, write
 

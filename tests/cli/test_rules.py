@@ -10,13 +10,14 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import ifgen as toolkit
+import ifgen_tools as tools
 import pytest
 from ifgen.config import rulebook
 
 from .conftest import Run, write
 
 RULES = list(rulebook.rules().values())
-CODE = Path(toolkit.__file__).parent
+CODE = [Path(each.__file__).parent for each in (toolkit, tools)]
 MAKERS = {"Diagnostic", "Said", "BadType", "BadValue", "_warning", "_problem", "report"}
 """What is called with the name of a rule."""
 COMPUTED = {
@@ -41,7 +42,12 @@ FILE_OF = {
 
 
 def named_in_code() -> set[str]:
-    return {name for path in CODE.rglob("*.py") for name in _named(ast.parse(path.read_text()))}
+    return {
+        name
+        for folder in CODE
+        for path in folder.rglob("*.py")
+        for name in _named(ast.parse(path.read_text()))
+    }
 
 
 def _named(tree: ast.Module) -> Iterator[str]:

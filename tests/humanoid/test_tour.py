@@ -12,8 +12,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from ifgen.cli.running.demo import demo
 from ifgen_pytest.domains import own_domain
+from ifgen_tools.running.demo import demo
 
 pytestmark = pytest.mark.timeout(300)
 PAGE = Path(__file__).parents[2] / "docs" / "humanoid.md"

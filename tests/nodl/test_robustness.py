@@ -11,7 +11,7 @@ import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ifgen.cli import report
+from ifgen.command_kit import report
 from ifgen.nodl import document, endpoints, options, parameters
 from ifgen.nodl.validators import RULES
 from ifgen.nodl.values import ARRAYS, SCALARS

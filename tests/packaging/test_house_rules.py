@@ -17,13 +17,13 @@ WRITERS: Final = {
     "cli/graph.py": "the drawing, to the file that was named",
     "cli/new.py": "files that do not exist yet",
     "cli/nodl.py": "the description, to the file that was named",
-    "cli/terminal.py": "the null device, in place of an output that is closed",
+    "command_kit/completion.py": "the null device, in place of stderr",
+    "command_kit/terminal.py": "the null device, in place of an output that is closed",
     "generator_py/templates/exports.py": "the folder that `transaction` fills",
     "observing/definitions_observation.py": "what was seen, for the process that asked",
     "observing/graph_observation.py": "what was seen, for the process that asked",
     "observing/node_observation.py": "what was seen, for the process that asked",
     "observing/observed.py": "a folder of its own, for an observer to report to",
-    "running/processes.py": "a folder of its own, for notes between processes",
 }
 """Who writes besides the room `writing`, and what; by file below codegen/ifgen."""
 
@@ -88,7 +88,7 @@ def test_only_the_command_line_names_its_streams() -> None:
         for path in modules("codegen/ifgen")
         if named.search(path.read_text())
     }
-    assert found == {"cli"}
+    assert found == {"cli", "command_kit"}
 
 
 def late_imports(tree: ast.AST, late: bool = False) -> Iterator[ast.Import | ast.ImportFrom]:

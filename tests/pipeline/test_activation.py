@@ -11,7 +11,7 @@ from pathlib import Path
 
 import ifgen
 import pytest
-from ifgen.running import overlays
+from ifgen.activation import overlays
 
 CODE = Path(ifgen.__file__).parent.parent
 ELSEWHERE = Path(Path.cwd().root)  # no project
@@ -67,7 +67,7 @@ def test_without_a_ros() -> None:
     assert run("print(ifgen.activate())") == "local"
     said = run("ifgen.activate('rclpy')")
     assert said.startswith(
-        "ifgen.running.activation.ActivationError: there is no real rclpy to import: source /opt/ros/"
+        "ifgen.activation.ActivationError: there is no real rclpy to import: source /opt/ros/"
     )
     assert run("ifgen.activate('ros1')").startswith(
         "ValueError: transport must be 'local', 'rclpy' or 'auto'"
@@ -82,7 +82,7 @@ def test_a_program_may_change_its_choice_before_the_first_import(fake_ros: Path)
 def test_a_mixture_is_refused(fake_ros: Path) -> None:
     said = run("import std_msgs\nifgen.activate('local')", fake_ros)
     assert said == (
-        f"ifgen.running.activation.ActivationError: 'std_msgs' is already imported from {fake_ros}/std_msgs (ROS), which does "
+        f"ifgen.activation.ActivationError: 'std_msgs' is already imported from {fake_ros}/std_msgs (ROS), which does "
         "not match the local transport: call ifgen.activate('local') before the first import of rclpy or a message "
         "package"
     )
@@ -141,7 +141,7 @@ def test_packages_of_nodes_are_found_in_the_output_folder(tmp_path: Path) -> Non
 
 def test_mistakes_in_what_is_asked_for(tmp_path: Path) -> None:
     assert run("ifgen.activate('local', 'nowhere')") == (
-        "ifgen.running.activation.ActivationError: there is no folder 'nowhere'; `ifgen generate -o nowhere` makes one"
+        "ifgen.activation.ActivationError: there is no folder 'nowhere'; `ifgen generate -o nowhere` makes one"
     )
     (tmp_path / "pyproject.toml").write_text("[tool.ifgen]\nnope = 1\n")
     program = "try:\n    ifgen.activate('local')\nexcept ifgen.InputError as error:\n    print(error)"

@@ -81,7 +81,7 @@ def test_both_where_there_is_no_real_one(pytester: pytest.Pytester) -> None:
     # Stands in for a machine without ROS: only our packages are found.
     pytester.mkpydir("without_ros")
     pytester.path.joinpath("without_ros", "__init__.py").write_text(
-        "import ifgen.running.activation as a\nfinds = a._finds\n"
+        "import ifgen.activation as a\nfinds = a._finds\n"
         "a._finds = lambda name, path: name != 'rclpy' and finds(name, path)\n"
     )
     result = pytester.runpytest_subprocess("-p", "without_ros", "-s", "--transport=both")
@@ -98,7 +98,7 @@ def test_nothing_happens_unless_asked(pytester: pytest.Pytester) -> None:
 
         def test_path():
             assert not any("underlay" in entry or entry.endswith("generated") for entry in sys.path)
-            assert not {"rclpy", "rmw_local", "ifgen.running.activation", "jinja2"} & set(sys.modules)
+            assert not {"rclpy", "rmw_local", "ifgen.activation", "jinja2"} & set(sys.modules)
         """
     )
     result = pytester.runpytest_subprocess("-W", "error")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from ifgen.running.late_options import take
+from ifgen_tools.running.commands import take_late_options
 
 from tests.cli.conftest import Run, cache_folder, clean_environment, ifgen
 
@@ -37,11 +37,14 @@ def test_words(
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.py").write_text("# ifgen run a.py --transport local\n")
     (tmp_path / "own.py").write_text("parser.add_argument('--transport')\n")
-    assert take(line.split(), ()) == (left.split(), found)
+    assert take_late_options(line.split(), ()) == (left.split(), found)
 
 
 def test_an_option_before_the_program_leaves_those_after_it_to_the_program() -> None:
-    assert take(["a.py", "--transport", "local"], ["--transport"]) == (["a.py", "--transport", "local"], {})
+    assert take_late_options(["a.py", "--transport", "local"], ["--transport"]) == (
+        ["a.py", "--transport", "local"],
+        {},
+    )
 
 
 def test_the_command_says_what_it_takes(ifgen: Run, tmp_path: Path) -> None:

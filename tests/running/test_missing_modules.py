@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from ifgen import resources
-from ifgen.running.ending import tell
+from ifgen_tools.running.ending import tell
 
 
 @pytest.mark.parametrize(

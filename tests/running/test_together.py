@@ -305,21 +305,21 @@ def test_lines_stay_whole(tmp_path: Path) -> None:
 @pytest.mark.parametrize("zenoh", [True, False])
 def test_without_unix_sockets_they_meet_at_a_router(zenoh: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """As on Windows. Without Zenoh, the programs themselves say that they reach nobody."""
-    from ifgen.running import processes
+    from ifgen_tools.running import processes
 
     monkeypatch.setattr(processes, "_has_unix_sockets", lambda: False)
     for name in processes._CHOOSE_PLACE:
         monkeypatch.delenv(name, raising=False)
     if not zenoh:
         monkeypatch.setitem(sys.modules, "zenoh", None)
-    with processes._meeting_place("local") as place:
+    with processes.meeting_place("local") as place:
         if not zenoh:
             assert place == {}
             return
         host, _, port = place["ROS_STATIC_PEERS"].removeprefix("tcp/").partition(":")
         with socket.create_connection((host, int(port)), timeout=LIMIT):
             pass
-    with processes._meeting_place("rclpy") as place:
+    with processes.meeting_place("rclpy") as place:
         assert place == {}
 
 
@@ -449,7 +449,7 @@ def test_what_a_program_leaves_behind_goes_with_it(tmp_path: Path) -> None:
 def test_ctrl_c_of_a_terminal_is_not_passed_on() -> None:
     """The terminal sends it to all processes; a second signal would interrupt them while they clean up."""
     program = (
-        "import os, signal\nfrom ifgen.running.processes import _signals\n"
+        "import os, signal\nfrom ifgen_tools.running.processes import _signals\n"
         "with _signals() as next_signal:\n"
         "    print('ready', flush=True)\n    print('terminal', next_signal(30))\n"
         "    os.kill(os.getpid(), signal.SIGTERM)\n    print('elsewhere', next_signal(30))\n"

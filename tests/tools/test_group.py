@@ -8,9 +8,8 @@ import sys
 import click
 import pytest
 from ifgen.cli import further
+from ifgen.command_kit.tool import ToolError, ToolGroup
 from ifgen.signals import Terminated
-from ifgen_tools.errors import ToolError
-from ifgen_tools.group import ToolGroup
 
 from tests.cli.conftest import Run
 

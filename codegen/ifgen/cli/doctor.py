@@ -17,14 +17,13 @@ from typing import Literal
 
 import click
 from click.core import ParameterSource
+from ifgen_tools.running import elsewhere, other_processes
 
 from ifgen import resources
-from ifgen.cli import terminal
-from ifgen.cli.arguments import format_ as format_option
-from ifgen.cli.arguments import include as include_option
-from ifgen.cli.running import other_processes
+from ifgen.activation import reason_against_domain
+from ifgen.command_kit import terminal
+from ifgen.command_kit.options import format_option, include_option
 from ifgen.config import installing
-from ifgen.running import elsewhere
 
 # Late imports: only `--graph` needs these.
 
@@ -108,8 +107,9 @@ def _graph_doctor(
 ) -> int:
     import shlex
 
+    from ifgen_tools.running import run as running
+
     from ifgen.cli.evolution import graph_doctor
-    from ifgen.running import run as running
 
     words = [running.split(shlex.split(program))[0] for program in programs]
     seen = graph_doctor.observed(words, transport)
@@ -138,8 +138,9 @@ def examine() -> Iterator[Finding]:
     yield _codec()
     yield Finding("local transport", "works anywhere: ifgen run --transport local PROGRAM")
     yield _other_processes()
-    yield Finding("nodes", elsewhere.everywhere() or "none of this user run on this machine now")
-    if reason := elsewhere.reason_against_domain("rclpy"):
+    nodes: str = import_module("ifgen_runtime.neighbours").everywhere()
+    yield Finding("nodes", nodes or "none of this user run on this machine now")
+    if reason := reason_against_domain("rclpy"):
         yield Finding("ROS domain", reason)
     yield from _real_rclpy(system)
 

@@ -11,9 +11,8 @@ from typing import Final
 import click
 
 from ifgen import resources
-from ifgen.cli import terminal
-from ifgen.cli.arguments import OUTPUT_FOLDER
-from ifgen.cli.arguments import quiet as quiet_option
+from ifgen.command_kit import terminal
+from ifgen.command_kit.options import OUTPUT_FOLDER, quiet_option
 from ifgen.config.settings import Settings, settle
 from ifgen.diagnostics import shown_path
 from ifgen.signals import sigterm_raises
@@ -87,8 +86,8 @@ def typings(directory: Path, check: bool, quiet: bool) -> int:
 
 def _folders(settings: Settings, typings: Path | None) -> list[Path]:
     """The folders, in the order in which packages are to be looked for."""
+    from ifgen.activation import import_folders
     from ifgen.pipeline.typings import are_there
-    from ifgen.running.activation import import_folders
 
     root = settings.file.parent if settings.file is not None else Path.cwd()
     own = [Path(folder) for folder in import_folders(settings.output)]

@@ -14,12 +14,17 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from ifgen.cli import terminal
-from ifgen.cli.arguments import EXISTING, FOLDER, OUTPUT_FOLDER, WithDepsCommand
-from ifgen.cli.arguments import include as include_option
-from ifgen.cli.arguments import quiet as quiet_option
-from ifgen.cli.arguments import strict as strict_option
-from ifgen.cli.arguments import with_deps as with_deps_option
+from ifgen.command_kit import terminal
+from ifgen.command_kit.options import (
+    EXISTING,
+    FOLDER,
+    OUTPUT_FOLDER,
+    WithDepsCommand,
+    include_option,
+    quiet_option,
+    strict_option,
+    with_deps_option,
+)
 from ifgen.config.settings import Settings, settle
 from ifgen.diagnostics import Diagnostic, any_errors, shown_path
 from ifgen.signals import sigterm_raises

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from ifgen.cli.arguments import EXISTING, OUTPUT_FILE
-from ifgen.cli.arguments import include as include_option
+from ifgen.command_kit.options import EXISTING, OUTPUT_FILE, include_option
 from ifgen.diagnostics import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -130,10 +129,11 @@ def _described(paths: Sequence[Path], include: Sequence[Path]) -> Graph:
 
 
 def _running(programs: Sequence[str], transport: Literal["local", "rclpy", "auto"]) -> Graph:
+    from ifgen_tools.running import run
+
     from ifgen.graph.model import of_endpoints
     from ifgen.observing import graph_observation
     from ifgen.observing.observed import observe
-    from ifgen.running import run
 
     words = [run.split(shlex.split(program))[0] for program in programs]
     observer = partial(graph_observation.command, nodes=len(words))

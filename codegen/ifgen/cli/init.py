@@ -11,8 +11,9 @@ from pathlib import Path, PurePosixPath
 import click
 
 from ifgen import resources
-from ifgen.cli import skeletons, terminal
-from ifgen.cli.arguments import EXISTING, OUTPUT_FOLDER
+from ifgen.cli import skeletons
+from ifgen.command_kit import terminal
+from ifgen.command_kit.options import EXISTING, OUTPUT_FOLDER
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
 from ifgen.reading.packages import find_packages
 from ifgen.reading.storage import read_source

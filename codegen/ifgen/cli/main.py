@@ -7,27 +7,28 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import redirect_stdout
-from importlib import import_module, invalidate_caches
+from collections.abc import Iterator, Sequence
+from importlib import import_module
 from io import TextIOWrapper
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal, cast
+from typing import TYPE_CHECKING, Final
 
 import click
 from click.core import ParameterSource
 
 from ifgen import resources
-from ifgen.cli import completion, further, terminal
-from ifgen.cli.arguments import EXISTING
-from ifgen.cli.arguments import format_ as format_option
-from ifgen.cli.arguments import include as include_option
-from ifgen.cli.arguments import quiet as quiet_option
-from ifgen.cli.arguments import strict as strict_option
-from ifgen.cli.arguments import transport as transport_option
+from ifgen.cli import further
+from ifgen.command_kit import completion, terminal
+from ifgen.command_kit.options import (
+    EXISTING,
+    format_option,
+    include_option,
+    quiet_option,
+    strict_option,
+)
 from ifgen.config.settings import settle
-from ifgen.diagnostics import Diagnostic, UsageError, printable, shown_path
-from ifgen.signals import Terminated, delay_interrupt, sigterm_raises
+from ifgen.diagnostics import Diagnostic, printable, shown_path
+from ifgen.signals import Terminated, sigterm_raises
 
 if TYPE_CHECKING:
     from ifgen.pipeline.inspection import Findings
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
 # Late imports: each command loads what it needs, so that the others start fast.
 
 _SIGINT: Final = 2
+
+_COMPLETE = "_IFGEN_COMPLETE"
+"""Set by the scripts when they ask for completions; `bash_source` and the like, for a script itself."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -48,8 +52,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _dispatch(arguments: Sequence[str] | None) -> int:
-    if os.environ.get(completion.VARIABLE):  # a shell asks what could come next
-        return completion.complete(commands)
+    if instruction := os.environ.get(_COMPLETE):  # a shell asks what could come next
+        from click.shell_completion import shell_complete
+
+        return shell_complete(commands, {}, "ifgen", _COMPLETE, instruction)
     words = list(sys.argv[1:] if arguments is None else arguments)
     if words[:1] == ["help"]:
         words = [*words[1:], "--help"]
@@ -116,7 +122,6 @@ class _Commands(click.Group):
         *(
             "adapt",
             "breaking",
-            "completion",
             "demo",
             "diff",
             "doctor",
@@ -128,18 +133,19 @@ class _Commands(click.Group):
             "nodl",
             "paths",
         ),
-        *("router", "rules", "templates", "test", "typings"),
+        *("router", "rules", "run", "templates", "test", "typings"),
     )
     module_of: Final = {
-        "adapt": "evolution.adapt",
-        "breaking": "evolution.breaking",
-        "demo": "running.demo",
-        "diff": "evolution.diff",
-        "lock": "evolution.lock",
-        "paths": "editors",
-        "router": "running.router",
-        "test": "running.test",
-        "typings": "editors",
+        "adapt": "ifgen.cli.evolution.adapt",
+        "breaking": "ifgen.cli.evolution.breaking",
+        "demo": "ifgen_tools.running.demo",
+        "diff": "ifgen.cli.evolution.diff",
+        "lock": "ifgen.cli.evolution.lock",
+        "paths": "ifgen.cli.editors",
+        "router": "ifgen_tools.running.router",
+        "run": "ifgen_tools.running.commands",
+        "test": "ifgen_tools.running.package_tests",
+        "typings": "ifgen.cli.editors",
     }
     """The modules that are not called as their command."""
 
@@ -149,7 +155,7 @@ class _Commands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.elsewhere:
             return super().get_command(ctx, cmd_name) or further.command(cmd_name)
-        module = import_module(f"ifgen.cli.{self.module_of.get(cmd_name, cmd_name)}")
+        module = import_module(self.module_of.get(cmd_name, f"ifgen.cli.{cmd_name}"))
         command: click.Command = getattr(module, cmd_name)
         return command
 
@@ -287,91 +293,29 @@ def print_hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     return int(bool(errors))
 
 
-@commands.command(
-    context_settings={
-        "ignore_unknown_options": True,
-        "allow_interspersed_args": False,
-        "help_option_names": ["-h", "--help"],
-    },
-    epilog="Example: ifgen run --transport local talker.py : listener.py",
-)
-@transport_option
-@click.option(
-    "--lockstep",
-    "in_lockstep",
-    is_flag=True,
-    help="One virtual time for all programs: the same run every time (local transport).",
-)
-@click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
-@click.option("--of-launch", is_flag=True, hidden=True)  # which has said already who runs elsewhere
-@click.argument(
-    "program",
-    metavar="FILE|-m MODULE|PACKAGE NODE [ARGS]...",
-    nargs=-1,
-    type=click.UNPROCESSED,
-    shell_complete=completion.programs,
-)
-def run(
-    transport: Literal["local", "rclpy", "auto"],
-    in_lockstep: bool,
-    generate_first: bool,
-    of_launch: bool,
-    program: tuple[str, ...],
-) -> int:
-    """Run programs written for rclpy, with `:` between them.
+@commands.command("completion", epilog="Example: ifgen completion bash > ifgen.bash")
+@click.argument("shell", type=click.Choice(["bash", "zsh", "fish"]))
+@click.pass_context
+def print_completion(context: click.Context, shell: str) -> int:
+    """Print a script for completion in a shell.
 
-    Each runs in a process of its own. When the last one ends, the others are interrupted as by Ctrl-C. For
-    example: `ifgen run server.py : client.py 41 1`. Arguments after FILE or MODULE belong to the program,
-    including --ros-args, except options of this command that the FILE does not mention.
+    It completes commands, options, files, and names: of types, packages, rules and templates, and of the
+    nodes, topics, services, actions and parameters that run.
 
-    PACKAGE is a generated one, sources in this folder or in src, or one that is installed. A FILE of that
-    name comes first.
-    """
-    with delay_interrupt(""):
-        from ifgen.running import run as running
+    \b
+    bash: into ~/.local/share/bash-completion/completions/ifgen
+    zsh:  into a folder of $fpath, as _ifgen
+    fish: into ~/.config/fish/completions/ifgen.fish
 
-        is_part = of_launch or running.is_one_of_several()
-        words, late = _late_options(() if is_part else program)
-        settings = settle()
-    transport = cast("Literal['local', 'rclpy', 'auto']", late.get("--transport", transport))
-    in_lockstep, generate_first = in_lockstep or "--lockstep" in late, generate_first or "--generate" in late
-    if generate_first:
-        from ifgen.cli import generate
+    Or `eval "$(ifgen completion bash)"` in ~/.bashrc, which takes a moment whenever a shell starts.
+    """  # noqa: D301 - the backspace is for click, which keeps the lines after it as they are
+    from click.shell_completion import ShellComplete, get_completion_class
 
-        with sigterm_raises(), redirect_stdout(sys.stderr), generate.without_garbage_collection():
-            # stdout is the programs'
-            generate.write(settings.with_paths().trusted())
-        invalidate_caches()  # Python may have looked into the folders already
-    with delay_interrupt(""):
-        programs = running.split(program if is_part else words, settings.output)
-    return running.run(programs, transport, settings.output, in_lockstep=in_lockstep, tells=not is_part)
-
-
-def _late_options(program: Sequence[str]) -> tuple[Sequence[str], Mapping[str, str]]:
-    """Take options of `ifgen run` from the words after the first program, and say so."""
-    from ifgen.running import late_options
-
-    context = click.get_current_context()
-    options = {"--transport": "transport", "--lockstep": "in_lockstep", "--generate": "generate_first"}
-    given = [
-        option
-        for option, name in options.items()
-        if context.get_parameter_source(name) is ParameterSource.COMMANDLINE
-    ]
-    words, late = late_options.take(program, given)
-    if (transport := late.get("--transport", "auto")) not in late_options.TRANSPORTS:
-        expected = f"{', '.join(late_options.TRANSPORTS[:-1])} or {late_options.TRANSPORTS[-1]}"
-        advice = "put `--` before the arguments of the program if it has an option of this name"
-        raise UsageError(
-            [Diagnostic("no-transport", f"there is no transport '{transport}', only {expected}", help=advice)]
-        )
-    if late:
-        taken = " ".join(" ".join(filter(None, each)) for each in late.items())
-        print(
-            f"note: `ifgen run` takes {taken} as its own: the place of its options is before the program",
-            file=sys.stderr,
-        )
-    return words, late
+    kind = get_completion_class(shell)
+    assert kind is not None, "one of click's own"
+    # Not the class's own `source`, which for bash starts one to look at its version.
+    print(ShellComplete.source(kind(context.find_root().command, {}, "ifgen", _COMPLETE)))
+    return 0
 
 
 def _looked_at(findings: Findings) -> str:

@@ -11,7 +11,7 @@ import click
 
 from ifgen import resources
 from ifgen.cli import skeletons
-from ifgen.cli.arguments import OUTPUT_FOLDER
+from ifgen.command_kit.options import OUTPUT_FOLDER
 from ifgen.config.settings import configured_paths
 from ifgen.definition import names, package_names
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from ifgen.cli.arguments import OUTPUT_FILE
-from ifgen.cli.arguments import transport as transport_option
+from ifgen.command_kit.options import OUTPUT_FILE, transport_option
 from ifgen.diagnostics import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -61,8 +60,9 @@ def describe(
     NODE is its name, which you can leave out if there is only one. PROGRAM is run first, as by `ifgen run`,
     with `:` between several programs.
     """
+    from ifgen_tools.running import run
+
     from ifgen.observing import node_document, node_observation
-    from ifgen.running import run
 
     if output is not None and output.exists() and not force:
         raise UsageError([Diagnostic("existing-file", f"{output} exists", help="replace it with --force")])

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 
 import click
 
-from ifgen.cli import completion
+from ifgen.command_kit import completion
 from ifgen.config import rulebook
 from ifgen.diagnostics import Diagnostic, UsageError
 

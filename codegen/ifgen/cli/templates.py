@@ -10,10 +10,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ifgen.cli import completion, terminal
-from ifgen.cli.arguments import FOLDER, OUTPUT_FOLDER
-from ifgen.cli.arguments import format_ as format_option
-from ifgen.cli.arguments import include as include_option
+from ifgen.command_kit import completion, terminal
+from ifgen.command_kit.options import FOLDER, OUTPUT_FOLDER, format_option, include_option
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError, shown_path
 from ifgen.signals import sigterm_raises

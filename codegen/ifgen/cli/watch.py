@@ -10,7 +10,7 @@ from pathlib import Path
 
 import watchfiles
 
-from ifgen.cli.terminal import exit_code_of
+from ifgen.command_kit.terminal import exit_code_of
 from ifgen.config.settings import Settings
 from ifgen.diagnostics import shown_path
 from ifgen.reading.listed_file import EXTENSIONS

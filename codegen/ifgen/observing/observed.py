@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Literal, TypeVar
 
+from ifgen_tools.running import run
+
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.running import run
 
 SeenT = TypeVar("SeenT")
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import click
+from ifgen.command_kit import options
+from ifgen.command_kit.tool import ToolGroup
 
-from ifgen_tools import completion, options
-from ifgen_tools.group import ToolGroup
+from ifgen_tools import completion
 
 # Late imports: each verb loads what it needs.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from ifgen.command_kit.tool import ToolError
 from ifgen.signals import Interrupt, defer_interrupt
 
 from ifgen_tools.action.graph import actions
@@ -16,7 +17,6 @@ from ifgen_tools.calling import (
     values_or_stdin,
     wait_for_server,
 )
-from ifgen_tools.errors import ToolError
 from ifgen_tools.session import open_session
 from ifgen_tools.texts.filling import fill, read_yaml
 

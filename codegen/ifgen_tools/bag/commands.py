@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Any, Final
 
 import click
+from ifgen.command_kit import options
+from ifgen.command_kit.options import Command
+from ifgen.command_kit.tool import ToolGroup
 
-from ifgen_tools import completion, options
+from ifgen_tools import completion
 from ifgen_tools.bag.many import ManyCommand, ManyOption
-from ifgen_tools.group import ToolGroup
-from ifgen_tools.options import Command
 
 # Late imports: each verb loads what it needs.
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ifgen.command_kit.tool import ToolError
 from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
 
 from ifgen_tools.bag.output import whole
 from ifgen_tools.bag.reading import reading
 from ifgen_tools.bag.saying import show, warn
 from ifgen_tools.bag.selection import Selection, selection
-from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
     from ifgen_runtime.bag import Bag

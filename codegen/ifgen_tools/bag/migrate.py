@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ifgen.command_kit.tool import ToolError
 from ifgen.config.settings import settle
 from ifgen_runtime.adapters import adapter_for
 from ifgen_runtime.bag.topics import Channel
@@ -19,7 +20,6 @@ from ifgen_tools.bag.conversions import Loss, conversion
 from ifgen_tools.bag.copying import Part, Passage, everything, written
 from ifgen_tools.bag.reading import reading
 from ifgen_tools.bag.saying import show
-from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
 
 
 def require_new(path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Final, cast
 
 import yaml
+from ifgen.command_kit.tool import ToolError
 from ifgen_runtime.bag.qos import OfferedQoS
 from rclpy.duration import Duration
 from rclpy.qos import (
@@ -18,7 +19,6 @@ from rclpy.qos import (
     ReliabilityPolicy,
 )
 
-from ifgen_tools.errors import ToolError
 from ifgen_tools.qos import fit
 
 _POLICIES: Final[dict[str, Any]] = {

@@ -8,8 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools.bag.saying import warn
-from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
     from ifgen_runtime.bag import Bag

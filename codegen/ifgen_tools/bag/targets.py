@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from ifgen.command_kit.tool import ToolError
 from ifgen.definition.described.texts import read_sources, read_texts
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.type_description import type_hash
@@ -14,7 +15,6 @@ from ifgen_runtime.bag.definitions import full_text
 from ifgen_runtime.bag.topics import Definition
 from ifgen_runtime.type_description import sources
 
-from ifgen_tools.errors import ToolError
 from ifgen_tools.types import interface_class
 
 if TYPE_CHECKING:

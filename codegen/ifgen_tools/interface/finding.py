@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Final
 
+from ifgen.command_kit.tool import ToolError, did_you_mean
 from ifgen.config.settings import settle
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.type_description import Described
@@ -13,8 +14,6 @@ from ifgen.diagnostics import UsageError
 from ifgen.pipeline.lookup import find_type
 from ifgen.reading.packages import find_packages
 from ifgen.reading.search_path import SearchPath
-
-from ifgen_tools.errors import ToolError, did_you_mean
 
 HEADINGS: Final = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 """Above the interfaces of each kind in a list."""

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
+from ifgen.command_kit.options import transport_option
+from ifgen.command_kit.tool import ToolError, did_you_mean
 
 from ifgen_tools import completion
-from ifgen_tools.errors import ToolError, did_you_mean
-from ifgen_tools.options import transport_option
 
 if TYPE_CHECKING:
     from launch import LaunchDescription
@@ -82,7 +82,8 @@ def launch(
     else the highest exit code of a process that died by itself.
     """
     from ifgen.config.settings import settle
-    from ifgen.running import elsewhere
+
+    from ifgen_tools.running import elsewhere
 
     paths, given = _split(words)
     output = settle().output
@@ -153,7 +154,7 @@ def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
 def _activate(transport: Literal["local", "rclpy", "auto"], output: Path) -> str:
     """Let launch files find the packages of a transport, and our launch before others; return which one."""
     from ifgen import resources
-    from ifgen.running.activation import ActivationError, put_on_path
+    from ifgen.activation import ActivationError, put_on_path
 
     try:
         chosen = put_on_path(transport, output)
@@ -175,7 +176,8 @@ def _path(paths: list[str], output: Path) -> str:
             )
         return paths[0]
     from ifgen.diagnostics import UsageError
-    from ifgen.running.finding import packages
+
+    from ifgen_tools.running import packages
 
     package, name = paths
     found = packages.find(package, output)

@@ -6,9 +6,8 @@ import traceback
 from pathlib import Path
 
 from ifgen import resources
+from ifgen.command_kit.tool import ToolError
 from ifgen.diagnostics import InputError, shown_path
-
-from ifgen_tools.errors import ToolError
 
 Place = tuple[str, int]
 """A file, and a line counted from 1."""

@@ -5,7 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools.nodes import find_node, node_names
 
 if TYPE_CHECKING:

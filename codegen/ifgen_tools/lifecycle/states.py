@@ -6,7 +6,8 @@ import json
 import sys
 from typing import Any
 
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools.lifecycle.remote import RemoteLifecycle, find_lifecycle_node, lifecycle_nodes
 from ifgen_tools.session import TransportChoice, open_session
 

@@ -7,7 +7,8 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools.lifecycle.remote import RemoteLifecycle, find_lifecycle_node
 from ifgen_tools.session import TransportChoice, open_session
 

@@ -8,9 +8,10 @@ from functools import wraps
 from typing import Any, Final
 
 import click
+from ifgen.command_kit import options
+from ifgen.command_kit.tool import ToolGroup
 
-from ifgen_tools import completion, options
-from ifgen_tools.group import ToolGroup
+from ifgen_tools import completion
 from ifgen_tools.nodes import hidden_nodes_option
 
 # Late imports: each verb loads what it needs.

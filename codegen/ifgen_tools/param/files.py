@@ -7,10 +7,10 @@ import sys
 from collections.abc import Mapping
 from typing import Final
 
+from ifgen.command_kit.tool import ToolError
 from ifgen_runtime import parameter_yaml
 from ifgen_runtime.parameter_scalars import Value
 
-from ifgen_tools.errors import ToolError
 from ifgen_tools.nodes import find_node
 from ifgen_tools.param.remote import RemoteParameters, SetResult
 from ifgen_tools.param.values import finish, json_value, parameter_of, value_of

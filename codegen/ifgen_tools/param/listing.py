@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from typing import Any
 
 import click
+from ifgen.command_kit.tool import ToolError
 
-from ifgen_tools.errors import ToolError
 from ifgen_tools.nodes import find_node, node_names
 from ifgen_tools.param.remote import TYPES, RemoteParameters
 from ifgen_tools.session import Session, TransportChoice, open_session

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen.command_kit.tool import ToolError, did_you_mean
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter, ParameterDescriptor, ParameterValue, SetParametersResult

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
 
+from ifgen.command_kit.tool import ToolError
 from ifgen_runtime import parameter_yaml
 from ifgen_runtime.parameter_scalars import Value
 
-from ifgen_tools.errors import ToolError
 from ifgen_tools.nodes import find_node
 from ifgen_tools.param.remote import TYPES, RemoteParameters, SetResult
 from ifgen_tools.session import TransportChoice, open_session

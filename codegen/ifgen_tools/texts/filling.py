@@ -6,11 +6,11 @@ import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from ifgen.command_kit.tool import ToolError, did_you_mean
 from ifgen_runtime import serialize, yaml_text
 from ifgen_runtime.errors import CodecError
 from ifgen_runtime.message import Message
 
-from ifgen_tools.errors import ToolError, did_you_mean
 from ifgen_tools.texts.field_types import INTEGERS, FieldType, element_class, field_types, type_name
 
 _HEADER = "std_msgs/msg/Header"

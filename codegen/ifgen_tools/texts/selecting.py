@@ -6,7 +6,8 @@ import re
 from collections.abc import Callable
 from typing import Any, Final
 
-from ifgen_tools.errors import ToolError, did_you_mean
+from ifgen.command_kit.tool import ToolError, did_you_mean
+
 from ifgen_tools.texts.field_types import FieldType, element_class, field_types, type_name
 
 _STEP: Final = re.compile(r"(?P<name>\w+)(?:\[(?P<index>\d+)\])?")

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import click
-
-from ifgen_tools import options
-from ifgen_tools.group import ToolCommand
+from ifgen.command_kit import options
+from ifgen.command_kit.tool import ToolCommand
 
 # Late imports: each view loads what it needs.
 

@@ -11,7 +11,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools.types import topic_class
 
 if TYPE_CHECKING:

@@ -6,9 +6,10 @@ from collections.abc import Callable
 from typing import Any, Final
 
 import click
+from ifgen.command_kit import options
+from ifgen.command_kit.tool import ToolGroup
 
-from ifgen_tools import completion, options, qos
-from ifgen_tools.group import ToolGroup
+from ifgen_tools import completion, qos
 
 # Late imports: each verb loads what it needs.
 

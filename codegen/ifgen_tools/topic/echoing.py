@@ -9,8 +9,8 @@ from typing import Any
 
 import click
 import yaml
+from ifgen.command_kit.tool import ToolError
 
-from ifgen_tools.errors import ToolError
 from ifgen_tools.expressions import condition
 from ifgen_tools.qos import chosen_qos
 from ifgen_tools.session import open_session

@@ -6,8 +6,9 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools import qos
-from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session
 from ifgen_tools.texts.field_types import type_name
 from ifgen_tools.types import class_with_hash, interface_class, message_name, topic_class, topic_types

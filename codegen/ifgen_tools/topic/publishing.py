@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import click
+from ifgen.command_kit.tool import ToolError
 
 from ifgen_tools import qos
-from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
 from ifgen_tools.texts import filling
 from ifgen_tools.texts.field_types import type_name

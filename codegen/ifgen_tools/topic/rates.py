@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
 
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools.expressions import condition
 from ifgen_tools.session import Session, open_session
 from ifgen_tools.texts.field_types import field_types, type_name

@@ -15,7 +15,7 @@ from typing import Any, Final
 
 from ifgen import resources
 from ifgen.diagnostics import InputError
-from ifgen.running.router import Router, open_router
+from ifgen_tools.running.router import Router, open_router
 
 from tests.interop.bench import definitions, samples
 from tests.interop.bench.bridged import Bridged

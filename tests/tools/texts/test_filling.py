@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from ifgen.command_kit.tool import ToolError
 from ifgen.dynamic import class_from_text
-from ifgen_tools.errors import ToolError
 from ifgen_tools.texts.filling import fill, read_yaml
 
 DEFINITION = """\

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from ifgen.command_kit.tool import ToolError
 from ifgen.dynamic import class_from_text
-from ifgen_tools.errors import ToolError
 from ifgen_tools.texts.selecting import selector
 
 CLASS: type[Any] = class_from_text(

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Iterator
 
 import pytest
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
 from ifgen_tools.top.web import server
 from ifgen_tools.top.web.page import serve
 from ifgen_tools.top.web.server import Server

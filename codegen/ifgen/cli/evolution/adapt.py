@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ifgen.cli import completion, terminal
-from ifgen.cli.arguments import OUTPUT_FOLDER
-from ifgen.cli.arguments import include as include_option
+from ifgen.command_kit import completion, terminal
+from ifgen.command_kit.options import OUTPUT_FOLDER, include_option
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError, shown_path
 from ifgen.signals import sigterm_raises

@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ifgen.cli import completion, terminal
-from ifgen.cli.arguments import EXISTING
-from ifgen.cli.arguments import format_ as format_option
-from ifgen.cli.arguments import include as include_option
-from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.cli.generate import without_garbage_collection
+from ifgen.command_kit import completion, terminal
+from ifgen.command_kit.options import EXISTING, format_option, include_option, quiet_option
 from ifgen.config.settings import Settings, settle
 from ifgen.config.silence import Policy, by_comments
 from ifgen.diagnostics import Diagnostic, Source

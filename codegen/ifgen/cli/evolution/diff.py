@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from ifgen.cli import completion, terminal
-from ifgen.cli.arguments import include as include_option
+from ifgen.command_kit import completion, terminal
+from ifgen.command_kit.options import include_option
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Final
 
-from ifgen.cli import report
+from ifgen.command_kit import report
 from ifgen.diagnostics import printable
 from ifgen.evolution.explaining.explanation import Explanation, explained, head
 

@@ -10,11 +10,14 @@ from typing import TYPE_CHECKING
 
 import click
 
-from ifgen.cli import terminal
-from ifgen.cli.arguments import EXISTING, WithDepsCommand
-from ifgen.cli.arguments import include as include_option
-from ifgen.cli.arguments import quiet as quiet_option
-from ifgen.cli.arguments import with_deps as with_deps_option
+from ifgen.command_kit import terminal
+from ifgen.command_kit.options import (
+    EXISTING,
+    WithDepsCommand,
+    include_option,
+    quiet_option,
+    with_deps_option,
+)
 from ifgen.config.settings import Settings, settle
 from ifgen.diagnostics import InputError, Source, shown_path
 from ifgen.pipeline.values import Condition

@@ -7,6 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools.bag.keys import DOWN, RIGHT, SPACE, UP, keyboard
 from ifgen_tools.bag.playing.pacing import PlayClock
 from ifgen_tools.bag.playing.player import Player, Range, part
@@ -14,7 +16,6 @@ from ifgen_tools.bag.playing.requests import Requester, requester, wait_for_answ
 from ifgen_tools.bag.reading import reading
 from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection, is_service_event
-from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
 
 if TYPE_CHECKING:

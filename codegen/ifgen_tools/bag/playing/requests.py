@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
+from ifgen.command_kit.tool import ToolError
 from ifgen_runtime.bag.classes import decoder
 from ifgen_runtime.codec import serialize
 
 from ifgen_tools.bag.saying import warn
 from ifgen_tools.bag.selection import SERVICE_EVENTS
 from ifgen_tools.calling import class_on_the_wire, known_class
-from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
     from rclpy.task import Future

@@ -11,6 +11,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
+from ifgen.command_kit.tool import ToolError
 from ifgen.signals import Interrupt, defer_interrupt
 from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
 
@@ -18,7 +19,6 @@ from ifgen_tools.bag.keys import SPACE, keyboard
 from ifgen_tools.bag.output import require_new, telling
 from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection
-from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
 
 if TYPE_CHECKING:

@@ -10,12 +10,12 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
+from ifgen.command_kit.tool import ToolError
 from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
 from ifgen_tools.bag.qos import adapted_request
 from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection
-from ifgen_tools.errors import ToolError
 from ifgen_tools.types import WireType, class_with_hash
 
 if TYPE_CHECKING:

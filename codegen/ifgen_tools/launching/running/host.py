@@ -13,7 +13,6 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, Final
 
-from ifgen.running.finding import packages
 from ifgen_runtime import parameter_yaml
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
 from launch.action import Action
@@ -31,6 +30,7 @@ from ifgen_tools.launching.running.loop import Loop, TimedCall
 from ifgen_tools.launching.running.output import LogHandler, Output
 from ifgen_tools.launching.running.process import Warden
 from ifgen_tools.launching.running.supervision import RUN, Supervision
+from ifgen_tools.running import packages
 
 _MAX_DEPTH: Final = 150
 """Entities within entities; more of them are files that include each other."""

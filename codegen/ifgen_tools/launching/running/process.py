@@ -12,8 +12,9 @@ from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any, Final
 
-from ifgen.running import processes
 from launch.launch_context import ProcessToStart
+
+from ifgen_tools.running import processes
 
 _CHUNK: Final = 65536
 _MAX_WAITING: Final = 64

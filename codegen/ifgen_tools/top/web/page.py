@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
+
 from ifgen_tools.top.snapshot import as_json
 from ifgen_tools.top.web.picture import Structure, pictures, structure
 from ifgen_tools.top.web.server import Server, Stream

@@ -17,13 +17,13 @@ import ifgen.dynamic
 import pytest
 import rclpy
 from geometry_msgs.msg import Point
+from ifgen.command_kit.tool import ToolError
 from ifgen_runtime.bag import Bag, writer
 from ifgen_runtime.bag.writer import BagWriter, Limits
 from ifgen_tools.bag.choices import file_format
 from ifgen_tools.bag.recording.record import RecordCommand, Recording, record
 from ifgen_tools.bag.recording.recorder import TopicRecorder
 from ifgen_tools.bag.selection import selection
-from ifgen_tools.errors import ToolError
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher

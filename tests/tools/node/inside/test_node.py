@@ -6,7 +6,7 @@ import json
 
 import pytest
 import rclpy
-from ifgen_tools.errors import ToolError
+from ifgen.command_kit.tool import ToolError
 from ifgen_tools.node.info import _all_of  # pyright: ignore[reportPrivateUsage] - what a race leads to
 from rclpy.node import Node
 

@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 import rclpy
+from ifgen.command_kit.tool import ToolError
 from ifgen.dynamic import class_from_text
 from ifgen_tools.calling import answer, class_on_the_wire
-from ifgen_tools.errors import ToolError
 from ifgen_tools.session import open_session
 from rclpy.node import Node
 from std_srvs.srv import SetBool

@@ -17,12 +17,12 @@ from pathlib import Path
 from typing import Final
 
 from ifgen import resources
+from ifgen.activation import is_node_package
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.reading import package_xml
-from ifgen.running.activation import is_node_package
 
 _INDEX: Final = "share/ament_index/resource_index/packages"
-_ENTRY_POINT: Final = "ifgen.running.finding.entry_point"
+_ENTRY_POINT: Final = "ifgen_tools.running.entry_point"
 
 
 @dataclass(frozen=True, slots=True)

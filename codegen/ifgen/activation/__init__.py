@@ -2,29 +2,51 @@
 
 Folders of top-level packages go on `sys.path`, and nothing else happens: no import hooks, no aliases.
 All or nothing: a real `std_msgs` under our `rclpy`, or our `rcl_interfaces` under the real one, would fail in
-ways that are hard to understand, so a mixture is refused.
+ways that are hard to understand, so a mixture is refused. This room only finds files; it imports no rclpy.
 """
 
 from __future__ import annotations
 
 import importlib.machinery
+import os
 import sys
 from collections.abc import Iterable, Iterator
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Literal
+from typing import Any, Final, Literal
 
 from ifgen import resources
+from ifgen.activation import overlays
 from ifgen.config import installing
+from ifgen.config.settings import settle
 from ifgen.reading import manifest
-from ifgen.running import elsewhere, overlays
 
 Transport = Literal["local", "rclpy"]
+
+_LAST_OF_DDS: Final = 232
 
 
 class ActivationError(RuntimeError):
     """This process cannot use that transport; the text says why and what to do."""
+
+
+def activate(
+    transport: Literal["local", "rclpy", "auto"] = "auto", generated: str | Path | None = None
+) -> Transport:
+    """Let `import rclpy` and `import std_msgs.msg` find one transport's packages; returns which one.
+
+    `local`: our rclpy and our message packages, even where a real ROS is installed. `rclpy`: the real ones;
+    our packages only fill the gaps. `auto`: the real ones where they are installed, else `local`.
+    `generated` is a folder with generated packages of yours, of messages and of nodes; None stands for
+    `output` of the nearest pyproject.toml with `[tool.ifgen]`, or else for `generated`.
+    Call it before the first import of either. Raises ActivationError if that is too late, if there is no real
+    rclpy to use, or if there is no folder `generated`; InputError if `[tool.ifgen]` has mistakes.
+    """
+    if generated is not None and not Path(generated).is_dir():
+        raise ActivationError(f"there is no folder '{generated}'; `ifgen generate -o {generated}` makes one")
+    return put_on_path(transport, settle().output if generated is None else Path(generated))
 
 
 def put_on_path(
@@ -47,7 +69,7 @@ def put_on_path(
             "there is no real rclpy to import: source /opt/ros/jazzy/setup.sh, "
             f"or run `{installing.add_extra('ros')}` (Linux x86_64)"
         )
-    if reason := elsewhere.reason_against_domain(chosen):
+    if reason := reason_against_domain(chosen):
         raise ActivationError(reason)
     _refuse_mixture(chosen, real)
     own, bundled = import_folders(generated) if generated else [], str(resources.bundled_generated())
@@ -64,6 +86,20 @@ def put_on_path(
             raise ActivationError(str(error)) from None
     sys.path[:] = dict.fromkeys(_with_nodes_of_examples(path, chosen))
     return chosen
+
+
+def reason_against_domain(transport: str) -> str:
+    """The reason why no program can start with ROS_DOMAIN_ID on a transport; empty if it can."""
+    domain_id: Any = import_module("ifgen_runtime.domain_id")  # by name: the toolkit imports nothing of it
+    text = os.environ.get("ROS_DOMAIN_ID")
+    try:
+        number: int = domain_id.of_environment()
+    except ValueError:
+        return f"ROS_DOMAIN_ID is {text!r}, expected a whole number, such as ROS_DOMAIN_ID=5"
+    is_dds = transport == "rclpy" and "zenoh" not in os.environ.get("RMW_IMPLEMENTATION", "")
+    if is_dds and number > _LAST_OF_DDS:
+        return f"ROS_DOMAIN_ID is {text!r}, and the domains of DDS are 0 to {_LAST_OF_DDS}"
+    return ""
 
 
 def folder_around(path: Path) -> Path | None:

@@ -12,14 +12,15 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
+from ifgen.activation import ActivationError, folder_around, is_node_package, put_on_path
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.reading.listed_file import EXTENSIONS
 from ifgen.reading.storage import near_paths
-from ifgen.running import alone, elsewhere, lockstep, processes
-from ifgen.running.activation import ActivationError, folder_around, is_node_package, put_on_path
-from ifgen.running.ending import tell
-from ifgen.running.program import find
+
+from ifgen_tools.running import alone, elsewhere, lockstep, processes
+from ifgen_tools.running.ending import tell
+from ifgen_tools.running.program import find
 
 SEPARATOR = ":"
 
@@ -68,7 +69,7 @@ def _without_package(program: list[str], generated: Path) -> list[str]:
     if first.startswith("-"):
         hint = _meant_option(first) + "`ifgen run --help` lists them"
         raise UsageError([Diagnostic("no-program", f"there is no option '{first}'", help=hint)])
-    from ifgen.running.finding import packages  # late: a program that is a file or a module is found without
+    from ifgen_tools.running import packages  # late: a program that is a file or a module is found without
 
     package = packages.find(first, generated) if re.fullmatch(r"[\w-]+", first) else None
     if package is None:

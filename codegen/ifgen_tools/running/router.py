@@ -1,23 +1,36 @@
-"""A Zenoh router: where programs on several machines meet. It needs nothing of ROS."""
+"""`ifgen router`: a Zenoh router, where programs on several machines meet. It needs nothing of ROS."""
 
 from __future__ import annotations
 
 import errno
 import os
 import re
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
+import click
+from ifgen.command_kit import terminal
+from ifgen.command_kit.options import EXISTING_FILE
 from ifgen.config import installing
 from ifgen.diagnostics import Diagnostic, InputError, UsageError
-from ifgen.running.router_configuration import check_endpoint, configuration, endpoints_of, reason
+from ifgen.signals import sigterm_raises
+
+from ifgen_tools.running.router_configuration import (
+    DEFAULT_ENDPOINT,
+    check_endpoint,
+    configuration,
+    endpoints_of,
+    reason,
+)
 
 if TYPE_CHECKING:
     import zenoh
 
 # Late imports: Zenoh is not everywhere.
 
+_LOOK_EVERY: Final = 1.0  # [s], for the routers that this one is to be connected to
 _ANYWHERE: Final = "choose an endpoint of this machine, such as `--listen tcp/[::]:7447`"
 _ADVICE: Final = {
     errno.EADDRINUSE: "is a router running already? otherwise choose another port with `--listen`",
@@ -26,6 +39,65 @@ _ADVICE: Final = {
 }
 _SYSTEM_ERROR: Final = re.compile(r"\(os error (\d+)\)")
 _ON_THIS_MACHINE: Final = re.compile(r"\w+/(127\.[\d.]+|\[::1\]|localhost):|unix|serial")
+
+
+@click.command(
+    context_settings={"help_option_names": ["-h", "--help"]},
+    epilog="Example: ifgen router --listen tcp/127.0.0.1:7450",
+)
+@click.option(
+    "--listen",
+    metavar="ENDPOINT",
+    multiple=True,
+    help="Listen there; may be repeated. Default: tcp/127.0.0.1:7447, which only this machine reaches. "
+    "All networks: tcp/[::]:7447.",
+)
+@click.option(
+    "--connect", metavar="ENDPOINT", multiple=True, help="Connect to the router there; may be repeated."
+)
+@click.option(
+    "--config",
+    metavar="FILE",
+    type=EXISTING_FILE,
+    help="Zenoh's own configuration, for TLS and access control. Default: the file in "
+    "ZENOH_ROUTER_CONFIG_URI, if that is set.",
+)
+def router(listen: tuple[str, ...], connect: tuple[str, ...], config: Path | None) -> int:
+    """Run a Zenoh router, until Ctrl-C.
+
+    Programs on several machines meet there: those on our local transport with ROS_STATIC_PEERS=HOST, and
+    those of ROS 2 with rmw_zenoh. It takes the place of rmw_zenohd. An ENDPOINT is tcp/HOST:PORT or
+    tls/HOST:PORT.
+    """
+    with sigterm_raises():
+        running = open_router(listen, connect, config)
+        try:
+            for line in _news(running):
+                print(line, flush=True)
+        finally:
+            running.close()
+    return 0
+
+
+def _news(router: Router) -> Iterator[str]:
+    """A line that says where it listens, then one whenever its connections change. They do not end."""
+    is_private = all(map(is_on_this_machine, router.listens))
+    reach = "for this machine only" if is_private else "for other machines too"
+    yield f"listening on {', '.join(router.listens) or 'nothing'}, {reach}; Ctrl-C ends it"
+    if router.listens == (DEFAULT_ENDPOINT,):
+        yield "`ifgen router --listen tcp/[::]:7447` lets other machines in"
+    names, expected = ", ".join(router.connects), len(router.connects)
+    before = None
+    while True:
+        time.sleep(_LOOK_EVERY)
+        connected = router.connected() if expected else None
+        if connected is None or connected == before:
+            continue
+        before = connected
+        if connected >= expected:
+            yield f"connected to {names}"
+        else:
+            yield f"connected to {connected} of {terminal.counted(expected, 'router')}, still trying: {names}"
 
 
 class Router:

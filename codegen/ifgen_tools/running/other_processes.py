@@ -6,7 +6,7 @@ import json
 import subprocess
 import sys
 
-from ifgen.running import elsewhere
+from ifgen_tools.running import elsewhere
 
 _TIME_LIMIT = 30.0  # [s]
 _PREFIX = "rmw_local: "

@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import Final
 
 import click
-
-from ifgen.cli import completion
 from ifgen.config import installing
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.running.finding import packages
+
+from ifgen_tools import completion
+from ifgen_tools.running import packages
 
 _FOLDERS: Final = ("test", "tests")
 
@@ -35,7 +35,7 @@ _FOLDERS: Final = ("test", "tests")
     envvar="IFGEN_TRANSPORT",
     help="Our rclpy (local), the real one (rclpy), the real one if it is installed (auto), or both in turn.",
 )
-@click.argument("package", shell_complete=completion.packages)
+@click.argument("package", shell_complete=completion.packages_to_run)
 @click.argument("arguments", metavar="[ARGS]...", nargs=-1, type=click.UNPROCESSED)
 def test(transport: str, package: str, arguments: tuple[str, ...]) -> int:
     """Run the tests of a package with pytest.

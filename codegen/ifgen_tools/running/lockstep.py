@@ -5,22 +5,21 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from functools import partial
-from importlib import import_module
-from typing import Any
 
-from ifgen.running.ending import INTERRUPTED, is_interruption, tell
-from ifgen.running.program import Program
+from ifgen_tools.running.ending import INTERRUPTED, is_interruption, tell
+from ifgen_tools.running.program import Program
 
 
 def run(programs: Sequence[Program]) -> int:
     """Run programs on the local transport until the last one ends; returns the exit code of what fails."""
-    lockstep: Any = import_module("rmw_local.lockstep")  # by name: the toolkit does not depend on an rclpy
+    from rmw_local import lockstep  # late: it is found once the transport has been chosen
+
     calls = [partial(_execute, program) for program in programs]
     try:
         lockstep.run(*calls, names=[program.name for program in programs])
     except lockstep.LockstepError as error:
         print(f"ifgen: {error}", file=sys.stderr)
-        return int(error.exit_code)
+        return error.exit_code
     except KeyboardInterrupt:
         return INTERRUPTED
     return 0

@@ -1,6 +1,6 @@
 """Runs an entry point as an installed script would.
 
-`-m ifgen.running.finding.entry_point NAME FOLDER MODULE:FUNCTION ...`; FOLDER is for `sys.path`, and may be
+`-m ifgen_tools.running.entry_point NAME FOLDER MODULE:FUNCTION ...`; FOLDER is for `sys.path`, and may be
 empty. The packages beside it can be imported as well, as in a workspace where all are installed.
 """
 

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.cli import failures, report
+from ifgen.command_kit import failures, report
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, any_errors, shown_path
 from ifgen.signals import INTERRUPTED, TERMINATED, Terminated
 

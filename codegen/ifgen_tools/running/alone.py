@@ -9,9 +9,9 @@ from functools import partial
 from io import TextIOWrapper
 from typing import Any
 
-from ifgen.running import processes
-from ifgen.running.ending import exit_code, is_interruption, tell
-from ifgen.running.program import Program
+from ifgen_tools.running import processes
+from ifgen_tools.running.ending import exit_code, is_interruption, tell
+from ifgen_tools.running.program import Program
 
 
 def run(program: Program) -> int:

@@ -10,12 +10,11 @@ from typing import Literal
 
 import click
 from click.core import ParameterSource
-
 from ifgen import resources
-from ifgen.cli.arguments import EXISTING_FILE, OUTPUT_FILE
+from ifgen.activation import ActivationError, put_on_path
+from ifgen.command_kit.options import EXISTING_FILE, OUTPUT_FILE
 from ifgen.config import installing
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.running.activation import ActivationError, put_on_path
 
 _PICTURES = (".gif", ".mp4", ".png")
 _GREATEST = 2**63 - 1  # integer of a parameter
@@ -92,7 +91,7 @@ def _complete(context: click.Context, parameter: click.Parameter, start: str) ->
 @click.option(
     "--joint-map", metavar="FILE", type=EXISTING_FILE, help="Which of its joints is which, as YAML."
 )
-def demo(  # noqa: PLR0913, PLR0917  # one for each option
+def demo(  # one for each option
     scenario: str,
     idle: bool,
     without: tuple[str, ...],

@@ -1,1 +1,0 @@
-"""Commands that run something until it ends, or Ctrl-C ends it."""

@@ -1,1 +1,0 @@
-"""Finds programs by the names of their packages."""
