@@ -159,7 +159,7 @@ def obstacles(profile: QoSProfile, others: Sequence[TopicEndpointInfo], *, publi
 
 
 def _advice(offered: QoSProfile, requested: QoSProfile) -> str:
-    """What keeps them apart, by policy."""
+    """The sentences about what keeps them apart, by policy."""
     parts: list[str] = []
     for policy in ("reliability", "durability", "liveliness"):
         ours, theirs = getattr(offered, policy), getattr(requested, policy)

@@ -42,7 +42,7 @@ def as_yaml(value: Any, style: Style = Style()) -> str:
 
 
 def written(document: Any, style: Style) -> str:
-    """What `plain` returned, as YAML that ends with a line break."""
+    """The value that `plain` returned, as YAML that ends with a line break."""
     if not style.flow and isinstance(document, dict) and document:
         try:
             return "\n".join(_lines(document, "")) + "\n"

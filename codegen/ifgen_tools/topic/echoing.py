@@ -23,7 +23,7 @@ from ifgen_tools.topic import listening
 
 @dataclass(frozen=True, slots=True)
 class Showing:
-    """What is shown of each message, and how: `form` is yaml, csv, json or raw."""
+    """The parts of each message that are shown, and how: `form` is yaml, csv, json or raw."""
 
     form: str
     style: Style

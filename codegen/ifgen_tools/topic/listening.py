@@ -1,4 +1,4 @@
-"""What the verbs that listen to a topic share: its full name, its class, and QoS that loses nothing."""
+"""The base of the verbs that listen to a topic: its full name, its class, and QoS that loses nothing."""
 
 from __future__ import annotations
 

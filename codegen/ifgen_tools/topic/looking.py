@@ -41,7 +41,7 @@ def list_topics(
     verbose: bool = False,
     as_json: bool = False,
 ) -> int:
-    """Print what there is now."""
+    """Print the topics."""
     with open_session(transport, use_sim_time=use_sim_time) as session:
         session.discover(spin_time)
         found = topics(session.node, include_hidden)
