@@ -29,7 +29,7 @@ _EVERY: Final = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """How often something is published: at a rate [Hz], a number of times (0: for ever), every n-th one printed.
+    """How often something is published: at a rate [Hz], N times (0: for ever), every n-th one printed.
 
     `subscriptions` are waited for before, for `patience` [s] at most (None: for ever). Afterwards the node
     stays for `keep_alive` [s].
