@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from ifgen_tools.texts.json_text import as_json
-from ifgen_tools.texts.yaml_text import as_yaml
+from ifgen_tools.texts.formats import as_json, as_yaml
 
 
 class Output(Protocol):

@@ -16,7 +16,7 @@ from ifgen_tools.errors import ToolError
 from ifgen_tools.nodes import find_node
 from ifgen_tools.param.remote import TYPES, RemoteParameters, SetResult
 from ifgen_tools.session import TransportChoice, open_session
-from ifgen_tools.texts.filling import shown, text_problem
+from ifgen_tools.texts.set_fields import shown, text_problem
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter, ParameterValue
