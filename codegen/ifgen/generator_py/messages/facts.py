@@ -5,7 +5,8 @@ from __future__ import annotations
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.type_description import TypeHashes
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec import CodecText, Extents, plan, render
+from ifgen.generator_py.codec.plan import Extents, plan
+from ifgen.generator_py.codec.python.text import CodecText, render
 
 
 class Facts:
