@@ -9,7 +9,7 @@ from ifgen.definition.interfaces import Interface, Registry
 from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.adapters.context import FrozenModule
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.messages.facts import Facts
+from ifgen.generator_py.messages.classes import Facts
 from ifgen.generator_py.messages.package import interface_module
 from ifgen.generator_py.names import TypeName, interface_name, module_name
 

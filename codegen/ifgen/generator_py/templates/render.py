@@ -10,11 +10,11 @@ import jinja2
 
 from ifgen import resources
 from ifgen.config.customization import Customization
+from ifgen.definition.names import snake_case
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.artifact import Artifact, OutputFile
-from ifgen.generator_py.names import snake_case
+from ifgen.generator_py.imports import gathered
 from ifgen.generator_py.templates.failures import explained
-from ifgen.generator_py.templates.gathering import gathered
 from ifgen.writing import cache as kept
 
 
