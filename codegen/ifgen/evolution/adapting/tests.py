@@ -12,7 +12,7 @@ from ifgen.evolution.adapting.steps import Function, Functions
 from ifgen.evolution.adapting.versions import TwoVersions
 from ifgen.evolution.edits import Versions
 from ifgen.generator_py.adapters.context import AdapterCase, AdapterTests, CheckText
-from ifgen.generator_py.adapters.strategies import OldStrategies
+from ifgen.generator_py.adapters.frozen import OldStrategies
 from ifgen.generator_py.imports import import_statement
 from ifgen.generator_py.tests.strategies import Strategies, enclosed
 
