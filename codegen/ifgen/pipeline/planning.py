@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ifgen.config.customization import Customization, Distributions
 from ifgen.definition.interfaces import InterfacePackage
 from ifgen.generator_py.artifact import Artifact, OutputFile
-from ifgen.generator_py.messages.facts import Facts
+from ifgen.generator_py.messages.classes import Facts
 from ifgen.pipeline import earlier
 from ifgen.pipeline.extra_outputs import ExtraOutputs
 from ifgen.pipeline.job import Job, PlannedPackage, Target

@@ -11,8 +11,8 @@ from ifgen.config import silence
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.generator_py.nodes.classes import user_module
 from ifgen.generator_py.nodes.context import NodeModule
-from ifgen.generator_py.nodes.custom_checks import checks_modules
 from ifgen.generator_py.nodes.members import RESERVED
+from ifgen.generator_py.nodes.package import checks_modules
 from ifgen.nodl.model import NodeDescription, NodePackage
 from ifgen.pipeline.user_parameters import vanished
 from ifgen.reading.python_text import parse, span_of
