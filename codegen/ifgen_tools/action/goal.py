@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.action.graph import actions
 from ifgen_tools.action.output import Json, Output, Text
 from ifgen_tools.calling import (
     answer,
@@ -15,6 +14,7 @@ from ifgen_tools.calling import (
     wait_for_server,
 )
 from ifgen_tools.errors import ToolError
+from ifgen_tools.graph.reading import actions
 from ifgen_tools.interruption import Interruption, noted
 from ifgen_tools.session import open_session
 from ifgen_tools.texts.filling import fill, read_yaml
