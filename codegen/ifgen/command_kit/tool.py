@@ -39,6 +39,9 @@ class ToolCommand(click.Command):
     The exit code is then the number of the signal, as that of `ros2` is.
     """
 
+    ends_as_in_ros: Final = True
+    """True if the command `ifgen` ends like this command, too, when interrupted before or after it."""
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run it, and return its exit code."""
         from ifgen.signals import Terminated, signals_raise  # late: `--help` does without

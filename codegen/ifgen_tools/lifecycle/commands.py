@@ -10,7 +10,7 @@ from ifgen.command_kit import options
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
-from ifgen_tools.nodes import hidden_nodes_option
+from ifgen_tools.graph.lookup import hidden_nodes_option
 
 # Late imports: each verb loads what it needs.
 
