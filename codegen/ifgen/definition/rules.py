@@ -15,12 +15,10 @@ from ifgen.definition.interfaces import Constant, Message, Scalar
 from ifgen.definition.names import PLACEHOLDER
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
-    Array,
     BasicType,
     BoundedSequence,
     FieldType,
-    UnboundedSequence,
-    ValueType,
+    element_of,
 )
 from ifgen.definition.units import is_unit
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
@@ -104,7 +102,7 @@ def check_value(
     text: str, type_: FieldType, value: Scalar | tuple[Scalar, ...], span: Span, problems: FileProblems
 ) -> None:
     """Warn of a value that is not what its text looks like."""
-    if isinstance(_element_type(type_), BasicType):
+    if isinstance(element_of(type_), BasicType):
         check_float32(type_, value, span, problems)
     else:
         _check_string(text, value, span, problems)
@@ -119,7 +117,7 @@ def check_float32(
 ) -> None:
     """Warn of a number that is too large for its type; `wider` is what the file calls the wider one."""
     values = value if isinstance(value, tuple) else (value,)
-    if _element_type(type_) == BasicType("float") and any(
+    if element_of(type_) == BasicType("float") and any(
         isinstance(item, float) and abs(item) >= _LARGEST_FLOAT32 for item in values
     ):
         problems.warning(
@@ -256,10 +254,6 @@ def _same_constant(constant: Constant, first: Constant) -> Diagnostic:
         "give one of the two another comment: then rosidl keeps them apart",
         "warning",
     )
-
-
-def _element_type(type_: FieldType) -> ValueType:
-    return type_.value_type if isinstance(type_, Array | BoundedSequence | UnboundedSequence) else type_
 
 
 def _is_closed(text: str) -> bool:

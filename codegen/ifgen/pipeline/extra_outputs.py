@@ -65,8 +65,7 @@ def _views(
     nodes: Mapping[str, Sequence[NodeDescription]],
 ) -> Iterator[PackageView]:
     # Few users have outputs of their own.
-    from ifgen.generator_py.outputs.interfaces import interface_view
-    from ifgen.generator_py.outputs.nodes import node_view
+    from ifgen.generator_py.outputs.build import interface_view, node_view
     from ifgen.generator_py.outputs.view import PackageView
 
     interfaces = {package.name: package.interfaces for package in packages}

@@ -18,6 +18,7 @@ from ifgen.definition.types import (
     NamespacedType,
     UnboundedSequence,
     ValueType,
+    element_of,
 )
 
 Value: TypeAlias = Scalar | tuple[Scalar, ...]
@@ -27,7 +28,7 @@ _LARGEST_CHARACTER: Final = 255
 
 def plain(value: Value, type_: FieldType) -> Plain | list[Plain]:
     """The plain form of a value of this type."""
-    element = type_.value_type if isinstance(type_, Array | BoundedSequence | UnboundedSequence) else type_
+    element = element_of(type_)
     if isinstance(value, tuple):
         return [_plain(item, element) for item in value]
     return _plain(value, element)

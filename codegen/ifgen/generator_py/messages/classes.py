@@ -4,19 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ifgen.definition.interfaces import Field, Message, Registry
+from ifgen.definition.interfaces import Constant, Field, Message, Registry
 from ifgen.definition.names import attribute_name, default_name
+from ifgen.definition.spelling import spelled
 from ifgen.definition.type_description import TypeHashes
-from ifgen.definition.types import Array, BasicType, BoundedSequence, NamespacedType, UnboundedSequence
+from ifgen.definition.types import (
+    COLLECTIONS,
+    Array,
+    BasicType,
+    BoundedSequence,
+    NamespacedType,
+    UnboundedSequence,
+)
 from ifgen.generator_py.codec.plan import Extents, plan
 from ifgen.generator_py.codec.program import NUMBERS
 from ifgen.generator_py.codec.python.text import CodecText, render
 from ifgen.generator_py.imports import IN_MESSAGES, Import, Scope
 from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass, ViewsText
-from ifgen.generator_py.messages.docstrings import constant_documentation, docstring, field_documentation
 from ifgen.generator_py.messages.enums import enums
 from ifgen.generator_py.messages.fields import Reference, default_literal, literal, python_field, rosidl_text
 from ifgen.generator_py.names import class_reference, slot_name
+from ifgen.generator_py.text import docstring
 
 # The classes of `ifgen_runtime.views`, by the dtype that their names spell in lower case.
 _ARRAYS = {name.lower().removesuffix("array"): name for name in IN_MESSAGES if name.endswith("Array")}
@@ -134,7 +142,7 @@ def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
         name=field.name,
         attribute=attribute,
         private=slot_name(field),
-        docstring=docstring(field_documentation(field), indent=8 if python.converted else 4),
+        docstring=docstring(_field_documentation(field), indent=8 if python.converted else 4),
         getter=getter,
         failed=failed,
         python=python,
@@ -153,7 +161,7 @@ def _lower_constants(message: Message) -> tuple[str, ...]:
 
 def _constants(message: Message, scope: Scope) -> Iterator[ConstantText]:
     for constant in message.constants:
-        text = constant_documentation(constant)
+        text = _constant_documentation(constant)
         value = literal(constant.value, scope)
         yield ConstantText(constant.name, scope("Final"), value, docstring(text, indent=4) if text else "")
 
@@ -162,10 +170,24 @@ def _defaults(message: Message, scope: Scope, reference: Reference) -> Iterator[
     for field in message.fields:
         if field.default_value is not None:
             value = default_literal(field, scope)
-            if isinstance(field.type, Array | BoundedSequence | UnboundedSequence):
+            if isinstance(field.type, COLLECTIONS):
                 value = f"{scope('mutable_default')}(lambda: {value})"
             annotation = python_field(field, scope, reference).annotation
             yield ConstantText(default_name(field), f"{scope('ClassVar')}[{annotation}]", value, "")
+
+
+def _field_documentation(field: Field) -> str:
+    """The definition's comment on a field, and a last line with its type (bounds included) and unit."""
+    last = f"`{spelled(field.type)}`"
+    if field.unit:
+        last += f", unit {field.unit}"
+    return f"{field.documentation}\n\n{last}." if field.documentation else f"{last}."
+
+
+def _constant_documentation(constant: Constant) -> str:
+    """The definition's comment on a constant, and a last line with its unit if it has one."""
+    unit = f"Unit {constant.unit}." if constant.unit else ""
+    return "\n\n".join(filter(None, (constant.documentation, unit)))
 
 
 def _tuple(names: Iterable[str]) -> str:

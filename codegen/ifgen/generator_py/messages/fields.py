@@ -6,7 +6,7 @@ from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from ifgen.definition.interfaces import Field, Scalar
 from ifgen.definition.names import attribute_name
@@ -16,13 +16,13 @@ from ifgen.definition.types import (
     BoundedSequence,
     BoundedString,
     BoundedWString,
-    CollectionType,
     FieldType,
     NamespacedType,
     UnboundedSequence,
     UnboundedString,
     UnboundedWString,
     ValueType,
+    element_of,
 )
 from ifgen.generator_py.codec.program import NUMBERS, Number
 from ifgen.generator_py.imports import Scope
@@ -30,6 +30,15 @@ from ifgen.generator_py.names import slot_name
 
 Reference: TypeAlias = Callable[[NamespacedType], str]
 """The name of a message class in the module."""
+
+_CLASSES: Final = {"boolean": "bool", "octet": "bytes", "char": "str", "float": "float", "double": "float"}
+_ZEROS: Final = {
+    "boolean": "False",
+    "octet": repr(bytes(1)),
+    "char": repr(chr(0)),
+    "float": "0.0",
+    "double": "0.0",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +117,7 @@ def literal(value: Scalar, scope: Scope) -> str:
 
 def is_float32(type_: FieldType) -> bool:
     """Whether a field of this type holds a float32, or several of them."""
-    return (type_.value_type if isinstance(type_, CollectionType) else type_) == BasicType("float")
+    return element_of(type_) == BasicType("float")
 
 
 def default_value(field: Field) -> Scalar | tuple[Scalar, ...] | None:
@@ -143,40 +152,23 @@ def default_literal(field: Field, scope: Scope) -> str:
             return f"[{elements}]"
 
 
-def _element_annotation(type_: ValueType, scope: Scope, reference: Reference) -> str:
-    match type_:
-        case NamespacedType():
-            return reference(type_)
-        case BasicType("boolean"):
-            return scope("bool")
-        case BasicType("octet"):
-            return scope("bytes")
-        case BasicType("char"):
-            return scope("str")
-        case BasicType("float" | "double"):
-            return scope("float")
-        case BasicType():
-            return scope("int")
-        case _:
-            return scope("str")
+def zero_literal(type_: ValueType) -> str | None:
+    """The value of a new message's field as a literal; None for a message."""
+    if isinstance(type_, NamespacedType):
+        return None
+    return _ZEROS.get(type_.typename, "0") if isinstance(type_, BasicType) else '""'
 
 
 def _zero(type_: ValueType, scope: Scope, reference: Reference) -> str:
-    match type_:
-        case NamespacedType():
-            return f"{scope.nested('default', reference(type_))}()"
-        case BasicType("boolean"):
-            return "False"
-        case BasicType("octet"):
-            return repr(bytes(1))
-        case BasicType("char"):
-            return repr(chr(0))
-        case BasicType("float" | "double"):
-            return "0.0"
-        case BasicType():
-            return "0"
-        case _:
-            return '""'
+    if isinstance(type_, NamespacedType):
+        return f"{scope.nested('default', reference(type_))}()"
+    return zero_literal(type_) or ""
+
+
+def _element_annotation(type_: ValueType, scope: Scope, reference: Reference) -> str:
+    if isinstance(type_, NamespacedType):
+        return reference(type_)
+    return scope(_CLASSES.get(type_.typename, "int") if isinstance(type_, BasicType) else "str")
 
 
 def _scalar(field: Field, type_: ValueType, scope: Scope, reference: Reference) -> PythonField:

@@ -9,8 +9,7 @@ from typing import Any, TypeAlias, cast
 from ifgen.definition.interfaces import Interface, InterfacePackage, Registry
 from ifgen.generator_py.messages import package as message_package
 from ifgen.generator_py.nodes import package as node_package
-from ifgen.generator_py.outputs.interfaces import interface_view
-from ifgen.generator_py.outputs.nodes import node_view
+from ifgen.generator_py.outputs.build import interface_view, node_view
 from ifgen.generator_py.outputs.view import PackageView
 from ifgen.generator_py.templates.listing import type_name
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
