@@ -1,4 +1,4 @@
-"""What a shell gets at TAB: names of types, nodes, topics, services, actions and parameters.
+"""The words that a shell gets at TAB: names of types, nodes, topics, services, actions and parameters.
 
 A running system is asked for a short time. Whatever is wrong is no completion, and nothing is printed.
 Use it as `shell_complete=` at the argument that takes such a name.

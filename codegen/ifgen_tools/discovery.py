@@ -1,4 +1,4 @@
-"""What the local transport knows of other processes, which rclpy's public API does not tell.
+"""The local transport's knowledge of other processes, which rclpy's public API does not tell.
 
 This is the one module of the tools that looks below rclpy.
 """

@@ -18,7 +18,7 @@ class Named:
 
 
 def named(names_and_types: Iterable[tuple[str, Iterable[str]]]) -> list[Named]:
-    """What rclpy says, sorted by name."""
+    """The names that rclpy returns, sorted."""
     return sorted((Named(name, list(types)) for name, types in names_and_types), key=lambda each: each.name)
 
 

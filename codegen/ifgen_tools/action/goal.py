@@ -17,7 +17,7 @@ from ifgen_tools.calling import (
 from ifgen_tools.errors import ToolError
 from ifgen_tools.interruption import Interruption, noted
 from ifgen_tools.session import open_session
-from ifgen_tools.texts.filling import fill, read_yaml
+from ifgen_tools.texts.set_fields import read_yaml, set_fields
 
 if TYPE_CHECKING:
     from ifgen_tools.session import Session, TransportChoice
@@ -51,13 +51,13 @@ def send_goal(
         name = session.node.resolve_topic_name(name)
         known = known_class(type_name, "action")
         if isinstance(known, type):
-            fill(known.Goal(), given)  # a mistake in it is said before anybody is waited for
+            set_fields(known.Goal(), given)  # a mistake in it is said before anybody is waited for
         output = Json() if as_json else Text()
         wait_for_server(session, "action", name, type_name, lambda: actions(session.node))
         cls = class_on_the_wire(session, "action", name, known)
         goal = cls.Goal()
         now = session.node.get_clock().now().to_msg()
-        for stamp in fill(goal, given):
+        for stamp in set_fields(goal, given):
             stamp(now)
         with noted() as interruption:
             sending = _Sending(session, name, cls, output, interruption)

@@ -1,4 +1,4 @@
-"""What whoever sits at the terminal does while a command runs: single keys, and Ctrl-C."""
+"""Single keys and Ctrl-C of the user at the terminal, while a command runs."""
 
 from __future__ import annotations
 

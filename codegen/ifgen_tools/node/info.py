@@ -47,7 +47,7 @@ def node_info(
 
 
 def _all_of(node: Node, wanted: str, include_hidden: bool) -> dict[str, list[Named]]:
-    """What a node has, in the order in which it is printed."""
+    """The endpoints of a node, in the order in which they are printed."""
     import rclpy.action
     from rclpy.node import NodeNameNonExistentError
 

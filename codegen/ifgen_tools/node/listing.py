@@ -22,7 +22,7 @@ def list_nodes(
     count: bool = False,
     as_json: bool = False,
 ) -> None:
-    """Print what there is now; on stderr, if two nodes have one name."""
+    """Print the nodes that run now; on stderr, if two nodes have one name."""
     with open_session(transport, use_sim_time=use_sim_time) as session:
         session.discover(spin_time)
         found = node_names(session.node, include_hidden)

@@ -1,4 +1,4 @@
-"""What rclpy's graph says of the other nodes: the same on every transport."""
+"""The other nodes in rclpy's graph: the same on every transport."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ _PATIENCE: Final = {signal.SIGINT: 60.0, signal.SIGTERM: 5.0}
 
 @dataclass(frozen=True, slots=True)
 class RecordCommand:
-    """What to record, and where to."""
+    """The topics to record, and where to write them."""
 
     choice: Selection
     output: Path | None = None

@@ -28,7 +28,7 @@ Structure = tuple[tuple[str, ...], tuple[Part, ...]]
 
 
 def structure(snapshot: Snapshot) -> Structure:
-    """What there is to draw: nodes, topics, services and actions without those that every node has."""
+    """The parts to draw: nodes, topics, services and actions without those that every node has."""
     parts: list[Part] = [
         ("topic", each.name, _once(each.publishers), _once(each.subscriptions))
         for each in snapshot.topics

@@ -1,4 +1,4 @@
-"""Values that a user wrote, into a message: what is not mentioned keeps its default."""
+"""Sets the fields of a message to values that a user wrote. Fields without a value keep their defaults."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 from ifgen_runtime import serialize, yaml_text
 from ifgen_runtime.errors import CodecError
+from ifgen_runtime.field_types import BASIC_TYPES, Basic, Field, Text, fields_of, type_name
 from ifgen_runtime.message import Message
 
 from ifgen_tools.errors import ToolError, did_you_mean
-from ifgen_tools.texts.field_types import INTEGERS, FieldType, element_class, field_types, type_name
 
 _HEADER = "std_msgs/msg/Header"
 _TIME = "builtin_interfaces/msg/Time"
@@ -31,7 +31,7 @@ def read_yaml(text: str, what: str = "the values") -> Any:
 _YAML_HELP = 'write them such as "{linear: {x: 0.5}}", in quotes of the shell'
 
 
-def fill(message: Any, values: Any) -> list[SetStamp]:
+def set_fields(message: Any, values: Any) -> list[SetStamp]:
     """Put values into the fields of a message.
 
     `values` is a mapping from names to values, as YAML has it; None is an empty one. `auto` for a Header and
@@ -50,100 +50,96 @@ def fill(message: Any, values: Any) -> list[SetStamp]:
 
 
 def _fill(message: Any, values: Any, path: str, stamps: list[SetStamp]) -> None:
-    types = field_types(type(message))
+    fields = {field.name: field for field in fields_of(type(message))}
     if not isinstance(values, Mapping):
-        example = ", ".join(f"{name}: ..." for name in list(types)[:2])
-        advice = _missing_space(values, types) or f"write {{{example}}}"
+        example = ", ".join(f"{name}: ..." for name in list(fields)[:2])
+        advice = _missing_space(values, fields) or f"write {{{example}}}"
         raise _wrong(path, f"expected the fields of {type_name(type(message))}", values, advice)
     for name, value in values.items():
-        if name not in types:
-            known = f"its fields are {', '.join(types) or 'none'}"
+        if name not in fields:
+            known = f"its fields are {', '.join(fields) or 'none'}"
             raise ToolError(
                 f"{type_name(type(message))} has no field {_join(path, str(name))!r}",
-                _missing_space(name, types) or did_you_mean(str(name), list(types)) or known,
+                _missing_space(name, fields) or did_you_mean(str(name), list(fields)) or known,
             )
         where = _join(path, name)
-        converted = _converted(message, name, types[name], value, where, stamps)
+        converted = _converted(message, fields[name], value, where, stamps)
         if converted is not _KEPT:
             try:
-                setattr(message, types[name].attribute, converted)
+                setattr(message, fields[name].attribute, converted)
             except (AssertionError, TypeError, ValueError, OverflowError) as error:
                 reason = " ".join(str(error).split())
                 raise ToolError(f"the value of {where!r} does not fit: {reason}") from None
 
 
-def _missing_space(text: Any, types: Mapping[str, FieldType]) -> str:
+def _missing_space(text: Any, fields: Mapping[str, Field]) -> str:
     """Advice for `x:0`, which YAML takes for a text or a name; empty for everything else."""
     name, colon, value = str(text).partition(":")
-    return f"write a space after the colon: {{{name}: {value or '...'}}}" if colon and name in types else ""
+    return f"write a space after the colon: {{{name}: {value or '...'}}}" if colon and name in fields else ""
 
 
 _KEPT = object()
 """A value that is in its message already."""
 
 
-def _converted(
-    message: Any, name: str, type_: FieldType, value: Any, where: str, stamps: list[SetStamp]
-) -> Any:
-    if type_.is_collection:
-        return _list(message, name, type_, value, where, stamps)
-    if not type_.is_message:
-        return _basic(type_, value, where)
-    inner = getattr(message, type_.attribute)
-    if type_.element == _HEADER and value == "auto":
+def _converted(message: Any, field: Field, value: Any, where: str, stamps: list[SetStamp]) -> Any:
+    if field.is_collection:
+        return _list(field, value, where, stamps)
+    if isinstance(field.type, Basic | Text):
+        return _basic(field.type, value, where)
+    inner = getattr(message, field.attribute)
+    if field.element == _HEADER and value == "auto":
         stamps.append(lambda stamp: setattr(inner, "stamp", stamp))
-    elif type_.element == _TIME and value == "now":
-        stamps.append(lambda stamp: setattr(message, type_.attribute, stamp))
+    elif field.element == _TIME and value == "now":
+        stamps.append(lambda stamp: setattr(message, field.attribute, stamp))
     else:
         _fill(inner, value, where, stamps)
     return _KEPT
 
 
-def _list(message: Any, name: str, type_: FieldType, values: Any, where: str, stamps: list[SetStamp]) -> Any:
-    if isinstance(values, bytes) and type_.element in {"uint8", "octet"}:
+def _list(field: Field, values: Any, where: str, stamps: list[SetStamp]) -> Any:
+    if isinstance(values, bytes) and field.element in {"uint8", "octet"}:
         values = list(values)
     if not isinstance(values, list | tuple):
-        raise _wrong(where, f"expected a list of {type_.element}", values)
-    if type_.is_array and len(values) != type_.size:
-        raise ToolError(f"{where!r} has {type_.size} elements, and {len(values)} are given")
-    if type_.size is not None and len(values) > type_.size:
-        raise ToolError(f"{where!r} has at most {type_.size} elements, and {len(values)} are given")
+        raise _wrong(where, f"expected a list of {field.element}", values)
+    if field.size is not None and len(values) != field.size:
+        raise ToolError(f"{where!r} has {field.size} elements, and {len(values)} are given")
+    if field.maximum is not None and len(values) > field.maximum:
+        raise ToolError(f"{where!r} has at most {field.maximum} elements, and {len(values)} are given")
     places = [f"{where}[{index}]" for index in range(len(values))]
-    if not type_.is_message:
+    type_ = field.type
+    if isinstance(type_, Basic | Text):
         return [_basic(type_, value, place) for value, place in zip(values, places, strict=True)]
-    cls = element_class(message, name)
-    elements = [cls() for _ in values]
+    elements = [type_() for _ in values]
     for element, value, place in zip(elements, values, places, strict=True):
         _fill(element, value, place, stamps)
     return elements
 
 
-def _basic(type_: FieldType, value: Any, where: str) -> Any:
+def _basic(type_: Basic | Text, value: Any, where: str) -> Any:
     """A value in the Python type of the field."""
-    match type_.element:
+    if isinstance(type_, Text):
+        text = _text(value, where)
+        if type_.maximum is not None and len(text) > type_.maximum:  # a real ROS does not check it
+            raise ToolError(f"{where!r} has at most {type_.maximum} characters, and {len(text)} are given")
+        return text
+    if type_.is_float:
+        return _float(value, where)
+    match type_.name:
         case "boolean":
             if isinstance(value, bool) or value in (0, 1):
                 return bool(value)
             raise _wrong(where, "expected true or false", value)
-        case "float" | "double" | "long double":
-            return _float(value, where)
-        case "string" | "wstring":
-            text = _text(value, where)
-            if type_.longest is not None and len(text) > type_.longest:  # a real ROS does not check it
-                raise ToolError(
-                    f"{where!r} has at most {type_.longest} characters, and {len(text)} are given"
-                )
-            return text
-        case "char" | "wchar":  # of IDL: that of .msg is uint8
+        case "char":  # of IDL: that of .msg is uint8
             if isinstance(value, str) and len(value) == 1:
                 return value
             raise _wrong(where, "expected one character", value)
         case "octet":
             if isinstance(value, str | bytes) and len(value) == 1:
                 return value.encode("latin-1", "replace") if isinstance(value, str) else value
-            return bytes([_integer("uint8", value, where)])
+            return bytes([_integer(BASIC_TYPES["uint8"], value, where)])
         case _:
-            return _integer(type_.element, value, where)
+            return _integer(type_, value, where)
 
 
 def _text(value: Any, where: str) -> str:
@@ -179,13 +175,13 @@ def _float(value: Any, where: str) -> float:
     raise _wrong(where, "expected a number", value)
 
 
-def _integer(type_: str, value: Any, where: str) -> int:
-    lowest, highest = INTEGERS[type_]
+def _integer(type_: Basic, value: Any, where: str) -> int:
+    lowest, highest = type_.range
     is_number = isinstance(value, int) or (isinstance(value, float) and value.is_integer())
     if not is_number or isinstance(value, bool):
-        raise _wrong(where, f"expected an integer ({type_})", value)
+        raise _wrong(where, f"expected an integer ({type_.name})", value)
     if not lowest <= value <= highest:
-        raise _wrong(where, f"expected {type_}, which is {lowest} to {highest}", value)
+        raise _wrong(where, f"expected {type_.name}, which is {lowest} to {highest}", value)
     return int(value)
 
 

@@ -1,4 +1,4 @@
-"""What the verbs that listen to a topic share: its full name, its class, and QoS that loses nothing."""
+"""Topics by their names: the full one, the class, and a subscription with QoS that loses nothing."""
 
 from __future__ import annotations
 
@@ -6,10 +6,11 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
+from ifgen_runtime.field_types import type_name
+
 from ifgen_tools import qos
 from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session
-from ifgen_tools.texts.field_types import type_name
 from ifgen_tools.types import class_with_hash, interface_class, message_name, topic_class, topic_types
 
 if TYPE_CHECKING:
@@ -105,14 +106,14 @@ def wait_for_topic(session: Session, topic: str) -> type[Any]:
     return topic_class(session.node, topic)
 
 
-def profile_for(session: Session, topic: str, chosen: dict[str, Any]) -> QoSProfile:
+def _profile_for(session: Session, topic: str, chosen: qos.QosChoice) -> QoSProfile:
     """The profile to listen with: what the user chose, else one that fits all publishers."""
     publishers = session.node.get_publishers_info_by_topic(topic)
     profile = qos.profile_of(chosen, "sensor_data")
-    if not set(chosen) - {"profile"}:
+    if not chosen.has_policies:
         for remark in qos.fitting(profile, publishers):
             print(remark, file=sys.stderr, flush=True)
-        if "profile" not in chosen:
+        if chosen.profile is None:
             profile.depth = _DEPTH
     return profile
 
@@ -122,7 +123,7 @@ def listen(
     topic: str,
     cls: type[Any],
     hear: Callable[..., None],
-    chosen: dict[str, Any],
+    chosen: qos.QosChoice,
     *,
     raw: bool = False,
     on_lost: Callable[[Any], None] | None = None,
@@ -134,7 +135,7 @@ def listen(
     """
     from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
-    profile = profile_for(session, topic, chosen)
+    profile = _profile_for(session, topic, chosen)
     on_obstacle = qos.teller_of_obstacles(session.node, topic, profile, publishes=False)
     subscribe: Any = session.node.create_subscription  # its overloads know no `raw` that is decided here
     events = SubscriptionEventCallbacks(message_lost=on_lost, incompatible_qos=on_obstacle)

@@ -1,23 +1,22 @@
-"""`ifgen topic list`, `info`, `type` and `find`: what the graph says of topics."""
+"""`ifgen topic list`, `info`, `type` and `find`: the topics in the graph."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from ifgen_tools.errors import Absent, did_you_mean
 from ifgen_tools.names import full_name, is_hidden
 from ifgen_tools.session import open_session
-from ifgen_tools.topic import listening
+from ifgen_tools.topic.options import FindOptions, InfoOptions, ListOptions, TopicOptions
+from ifgen_tools.topic.topics import find_topic
 from ifgen_tools.types import message_name
 
 if TYPE_CHECKING:
     from rclpy.node import Node
     from rclpy.topic_endpoint_info import TopicEndpointInfo
-
-Asked = Literal["local", "rclpy", "auto"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,30 +29,20 @@ class Topic:
     subscribers: int
 
 
-def list_topics(
-    *,
-    transport: Asked = "auto",
-    spin_time: float | None = None,
-    use_sim_time: bool = False,
-    include_hidden: bool = False,
-    show_types: bool = False,
-    count_topics: bool = False,
-    verbose: bool = False,
-    as_json: bool = False,
-) -> int:
-    """Print what there is now."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        session.discover(spin_time)
-        found = topics(session.node, include_hidden)
-    if count_topics:
+def list_topics(chosen: ListOptions) -> int:
+    """Print the topics."""
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        session.discover(chosen.spin_time)
+        found = topics(session.node, chosen.include_hidden)
+    if chosen.count_topics:
         print(len(found))
-    elif as_json:
+    elif chosen.as_json:
         print(json.dumps([asdict(each) for each in found], indent=2))
-    elif verbose and found:
+    elif chosen.verbose and found:
         print("\n".join((_counted(found, "Published"), _counted(found, "Subscribed"))))
     else:
         for each in found:
-            print(f"{each.name} [{', '.join(each.types)}]" if show_types else each.name)
+            print(f"{each.name} [{', '.join(each.types)}]" if chosen.show_types else each.name)
     return 0
 
 
@@ -76,32 +65,24 @@ def _counted(found: Iterable[Topic], role: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def info(
-    *,
-    topic_name: str,
-    verbose: bool,
-    transport: Asked,
-    spin_time: float | None,
-    use_sim_time: bool,
-    as_json: bool,
-) -> int:
+def info(chosen: InfoOptions) -> int:
     """Print the type of a topic, and who is on it."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        node, name = session.node, listening.find_topic(session, topic_name, spin_time)
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        node, name = session.node, find_topic(session, chosen.topic_name, chosen.spin_time)
         types = _types(node, name)
         sides = {
             "Publisher": node.get_publishers_info_by_topic(name),
             "Subscription": node.get_subscriptions_info_by_topic(name),
         }
-    if as_json:
+    if chosen.as_json:
         ends = {f"{side.lower()}s": [_plain(each) for each in infos] for side, infos in sides.items()}
         print(json.dumps({"name": name, "types": types, **ends}, indent=2))
         return 0
-    end = "\n\n" if verbose else "\n"
+    end = "\n\n" if chosen.verbose else "\n"
     print(f"Type: {types[0] if len(types) == 1 else types}", end=end)
     for side, infos in sides.items():
         print(f"{side} count: {len(infos)}", end=end)
-        for each in infos if verbose else ():
+        for each in infos if chosen.verbose else ():
             print(each, end=end)
     return 0
 
@@ -127,34 +108,23 @@ def _plain(endpoint: TopicEndpointInfo) -> dict[str, Any]:
     }
 
 
-def type_(
-    *, topic_name: str, transport: Asked, spin_time: float | None, use_sim_time: bool, as_json: bool
-) -> int:
+def type_(chosen: TopicOptions) -> int:
     """Print the types of a topic."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        types = _types(session.node, listening.find_topic(session, topic_name, spin_time))
-    print(json.dumps(types) if as_json else "\n".join(types))
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        types = _types(session.node, find_topic(session, chosen.topic_name, chosen.spin_time))
+    print(json.dumps(types) if chosen.as_json else "\n".join(types))
     return 0
 
 
-def find(
-    *,
-    topic_type: str,
-    count_topics: bool,
-    include_hidden: bool,
-    transport: Asked,
-    spin_time: float | None,
-    use_sim_time: bool,
-    as_json: bool,
-) -> int:
+def find(chosen: FindOptions) -> int:
     """Print the topics of a type."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        session.discover(spin_time)
-        wanted = message_name(topic_type)
-        found = [each.name for each in topics(session.node, include_hidden) if wanted in each.types]
-    if count_topics:
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        session.discover(chosen.spin_time)
+        wanted = message_name(chosen.topic_type)
+        found = [each.name for each in topics(session.node, chosen.include_hidden) if wanted in each.types]
+    if chosen.count_topics:
         print(len(found))
-    elif as_json:
+    elif chosen.as_json:
         print(json.dumps(found))
     else:
         print("".join(f"{name}\n" for name in found), end="")

@@ -13,10 +13,8 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from ifgen.dynamic import class_from_text
-from ifgen_tools.texts import yaml_text
-from ifgen_tools.texts.csv_text import as_csv
-from ifgen_tools.texts.json_text import as_json
-from ifgen_tools.texts.yaml_text import Style, as_yaml
+from ifgen_tools.texts import formats
+from ifgen_tools.texts.formats import Style, as_csv, as_json, as_yaml
 from sensor_msgs.msg import JointState
 
 DEFINITION = """\
@@ -137,8 +135,8 @@ TEXTS = st.text(st.sampled_from("abyesnoftrul0123 .:#'\"/-_~\n\té…"), max_siz
 )
 def test_the_fast_way_writes_what_pyyaml_writes(document: dict[str, Any]) -> None:
     try:
-        lines = yaml_text._lines(document, "")
-    except yaml_text._Hard:
+        lines = formats._lines(document, "")
+    except formats._Hard:
         return
-    slowly = yaml.dump(document, Dumper=yaml_text._Dumper, allow_unicode=True, default_flow_style=False)
+    slowly = yaml.dump(document, Dumper=formats._Dumper, allow_unicode=True, default_flow_style=False)
     assert "\n".join(lines) + "\n" == slowly

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from ifgen.dynamic import class_from_text
 from ifgen_tools.errors import ToolError
-from ifgen_tools.texts.filling import fill, read_yaml
+from ifgen_tools.texts.set_fields import read_yaml, set_fields
 
 DEFINITION = """\
 std_msgs/Header header
@@ -40,23 +40,23 @@ def test_what_is_not_mentioned_keeps_its_default(message: Any) -> None:
     text = (
         "{small: -3, pair: [1, 1e-3], points: [{x: 0.1}], one: 7, blob: !!binary AAE=, names: [a], flag: 1}"
     )
-    assert fill(message, read_yaml(text)) == []
+    assert set_fields(message, read_yaml(text)) == []
     assert (message.small, list(message.pair), message.text) == (-3, [1.0, 0.001], "default")
     assert (message.points[0].x, message.points[0].y) == (0.1, 0.0)
     assert (message.one, bytes(message.blob), message.names, message.flag) == (b"\x07", b"\0\1", ["a"], True)
-    fill(message, None)
-    fill(message, {"text": 5})
+    set_fields(message, None)
+    set_fields(message, {"text": 5})
     assert message.text == "5"  # as in ROS
 
 
 def test_floats_that_are_no_numbers(message: Any) -> None:
-    fill(message, read_yaml("pair: [.nan, inf]"))
+    set_fields(message, read_yaml("pair: [.nan, inf]"))
     assert math.isnan(message.pair[0])
     assert message.pair[1] == math.inf
 
 
 def test_the_time_of_sending(message: Any) -> None:
-    stamps = fill(message, read_yaml("{header: auto, at: now}"))
+    stamps = set_fields(message, read_yaml("{header: auto, at: now}"))
     stamp = type(message.at)(sec=7)
     for set_stamp in stamps:
         set_stamp(stamp)
@@ -118,7 +118,7 @@ def test_the_time_of_sending(message: Any) -> None:
 )
 def test_what_is_wrong_is_named(message: Any, text: str, expected: str, help: str) -> None:
     with pytest.raises(ToolError) as caught:
-        fill(message, read_yaml(text))
+        set_fields(message, read_yaml(text))
     assert caught.value.message == expected
     assert caught.value.help.startswith(help)
 
@@ -164,7 +164,7 @@ VALUES = st.recursive(
 def test_whatever_it_is_there_is_a_message_or_one_error(values: Any) -> None:
     message = CLASS()
     try:
-        fill(message, values)
+        set_fields(message, values)
     except ToolError as error:
         assert error.message
     else:
@@ -173,7 +173,7 @@ def test_whatever_it_is_there_is_a_message_or_one_error(values: Any) -> None:
 
 def test_a_very_long_number(message: Any) -> None:
     with pytest.raises(ToolError, match="expected a list of double, got a very long number"):
-        fill(message, {"pair": 10**5000})
+        set_fields(message, {"pair": 10**5000})
 
 
 def test_characters_of_idl() -> None:
@@ -181,7 +181,7 @@ def test_characters_of_idl() -> None:
     text = "module demo_msgs { module msg { struct Letter { char one; }; }; };"
     cls = class_from_text("demo_msgs/msg/Letter", text, idl=True)
     message = cls()
-    fill(message, read_yaml("{one: a}", "the values"))
+    set_fields(message, read_yaml("{one: a}", "the values"))
     assert message.one == "a"
     with pytest.raises(ToolError, match="the value of 'one': expected one character, got \"ab\""):
-        fill(cls(), read_yaml("{one: ab}", "the values"))
+        set_fields(cls(), read_yaml("{one: ab}", "the values"))

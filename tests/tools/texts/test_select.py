@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from ifgen.dynamic import class_from_text
 from ifgen_tools.errors import ToolError
-from ifgen_tools.texts.selecting import selector
+from ifgen_tools.texts.select import selector
 
 CLASS: type[Any] = class_from_text(
     "demo_msgs/msg/Route", "geometry_msgs/Point[] points\nfloat64[3] limits\nfloat64 speed"

@@ -1,4 +1,4 @@
-"""Messages as YAML, as `ros2 topic echo` prints them.
+"""Messages as YAML and CSV, as `ros2 topic echo` prints them, and as JSON for tools.
 
 Most messages hold nothing that YAML would have to quote. They are written here, some twenty times as fast as
 PyYAML, which writes the others.
@@ -6,16 +6,18 @@ PyYAML, which writes the others.
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import sys
 from array import array
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
 import yaml
-
-from ifgen_tools.texts.field_types import FieldType, field_types
+from ifgen_runtime.field_types import Field, fields_of
 
 _PLAIN: Final = re.compile(r"[A-Za-z_/]([\w/. -]*[\w/.-])?", re.ASCII)
 _RESERVED: Final = frozenset({"yes", "no", "true", "false", "on", "off", "null"})
@@ -35,6 +37,10 @@ class Style:
     no_str: bool = False
     flow: bool = False
 
+    def fits(self, value: Any) -> bool:
+        """True if a text or an array is not cut."""
+        return self.longest is None or len(value) <= self.longest
+
 
 def as_yaml(value: Any, style: Style = Style()) -> str:
     """A message, or a value that `plain` takes, as YAML that ends with a line break."""
@@ -42,7 +48,7 @@ def as_yaml(value: Any, style: Style = Style()) -> str:
 
 
 def written(document: Any, style: Style) -> str:
-    """What `plain` returned, as YAML that ends with a line break."""
+    """The value that `plain` returned, as YAML that ends with a line break."""
     if not style.flow and isinstance(document, dict) and document:
         try:
             return "\n".join(_lines(document, "")) + "\n"
@@ -54,22 +60,21 @@ def written(document: Any, style: Style) -> str:
     return text
 
 
-def plain(value: Any, style: Style, type_: FieldType | None = None) -> Any:
+def plain(value: Any, style: Style, field: Field | None = None) -> Any:
     """A message as nested dictionaries, or the value of a field as what YAML knows."""
     if isinstance(value, bool | int | float):
         return value
     if isinstance(value, str):
-        return f"<string length: <{len(value)}>>" if style.no_str else cut(value, style)
+        return f"<string length: <{len(value)}>>" if style.no_str else _cut(value, style)
     if isinstance(value, bytes):
-        return cut(value.decode("latin-1"), style)
+        return _cut(value.decode("latin-1"), style)
     if hasattr(value, "get_fields_and_field_types"):
-        types = field_types(type(value)).items()
-        return {name: plain(getattr(value, field.attribute), style, field) for name, field in types}
+        return {f.name: plain(getattr(value, f.attribute), style, f) for f in fields_of(type(value))}
     if hasattr(value, "item") and not getattr(value, "shape", ()):
         return value.item()  # a single number of numpy
-    if style.no_arr and type_ is not None:
-        return abbreviated(len(value), type_)
-    is_cut = style.longest is not None and len(value) > style.longest
+    if style.no_arr and field is not None:
+        return _abbreviated(len(value), field)
+    is_cut = not style.fits(value)
     elements = value[: style.longest] if is_cut else value
     if isinstance(elements, array) or hasattr(elements, "tolist"):
         shown = elements.tolist()
@@ -78,19 +83,17 @@ def plain(value: Any, style: Style, type_: FieldType | None = None) -> Any:
     return [*shown, "..."] if is_cut else shown
 
 
-def cut(text: str, style: Style) -> str:
+def _cut(text: str, style: Style) -> str:
     """A text that is not longer than the style allows, but for three dots."""
-    if style.longest is None or len(text) <= style.longest:
-        return text
-    return f"{text[: style.longest]}..."
+    return text if style.fits(text) else f"{text[: style.longest]}..."
 
 
-def abbreviated(length: int, type_: FieldType) -> str:
+def _abbreviated(length: int, field: Field) -> str:
     """The type and the length of an array, in its place."""
-    if type_.is_array:
-        return f"<array type: {type_.element}[{type_.size}]>"
-    bound = "" if type_.size is None else f"[{type_.size}]"
-    return f"<sequence type: {type_.element}{bound}, length: {length}>"
+    if not field.is_sequence:
+        return f"<array type: {field.element}[{field.size}]>"
+    bound = "" if field.maximum is None else f"[{field.maximum}]"
+    return f"<sequence type: {field.element}{bound}, length: {length}>"
 
 
 class _Hard(Exception):
@@ -164,3 +167,62 @@ class _Dumper(yaml.SafeDumper):
 
 
 _Dumper.add_representer(dict, _Dumper.represent_fields)
+
+
+def as_csv(message: Any, style: Style) -> str:
+    """All values of a message, those of nested messages too, in the order of the definition."""
+    fields = fields_of(type(message))
+    return ",".join(_csv_text(getattr(message, field.attribute), style, field) for field in fields)
+
+
+def _csv_text(value: Any, style: Style, field: Field | None = None) -> str:
+    if isinstance(value, str):
+        if style.no_str:
+            return f"<string length: <{len(value)}>>"
+        return _cell(_cut(value, style))
+    if isinstance(value, bytes):
+        return _cell(str(value if style.fits(value) else value[: style.longest] + b"..."))
+    if hasattr(value, "get_fields_and_field_types"):
+        return as_csv(value, style)
+    if not hasattr(value, "__len__"):  # a number
+        return str(value)
+    if style.no_arr and field is not None:
+        return _cell(_abbreviated(len(value), field))
+    return ",".join(_elements(value, style))
+
+
+def _cell(text: str) -> str:
+    """A text as one cell of a row."""
+    return '"' + text.replace('"', '""') + '"' if any(each in text for each in ',"\r\n') else text
+
+
+def _elements(values: Any, style: Style) -> Iterator[str]:
+    for value in values if style.fits(values) else values[: style.longest]:
+        yield _csv_text(value, style)
+    if not style.fits(values):
+        yield "..."
+
+
+def as_json(value: Any, info: Any = None) -> str:
+    """A message, or the value of a field, as JSON; with its info, as the keys `info` and `message`.
+
+    Floats that JSON cannot hold become "NaN", "Infinity" and "-Infinity", and bytes a text of one character
+    each.
+    """
+    document = plain(value, Style())
+    if info is not None:
+        document = {"info": dict(info), "message": document}
+    try:
+        return json.dumps(document, allow_nan=False, ensure_ascii=False)
+    except ValueError:
+        return json.dumps(_finite(document), allow_nan=False, ensure_ascii=False)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {name: _finite(inner) for name, inner in value.items()}
+    if isinstance(value, list):
+        return [_finite(inner) for inner in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return "NaN" if math.isnan(value) else "Infinity" if value > 0 else "-Infinity"
+    return value
