@@ -22,6 +22,8 @@ from ifgen.generator_py.text import docstring
 def enums(message: Message, spelling: Callable[[str], str] = str) -> tuple[EnumText, ...]:
     """The enumerations of a message, in the order of the fields; `spelling` spells names of Python."""
     found = list(_enums(message, spelling))
+    if not found:
+        return ()
     # `a_1` and `a1` would have the same name: neither gets it. In an .idl file a field or a constant may have
     # it.
     names = Counter(enum.name for enum in found)
