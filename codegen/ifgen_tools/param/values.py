@@ -13,7 +13,7 @@ from ifgen_runtime import parameter_yaml
 from ifgen_runtime.parameter_scalars import Value
 
 from ifgen_tools.errors import ToolError
-from ifgen_tools.nodes import find_node
+from ifgen_tools.graph.lookup import find_node
 from ifgen_tools.param.remote import TYPES, RemoteParameters, SetResult
 from ifgen_tools.session import TransportChoice, open_session
 from ifgen_tools.texts.set_fields import shown, text_problem

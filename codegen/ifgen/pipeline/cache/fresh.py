@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
+from ifgen import signals
 from ifgen.definition.interfaces import Interface, Registry
 from ifgen.pipeline import previous_output
 from ifgen.pipeline.cache.fingerprints import Fingerprints, Needs, of_files
@@ -18,7 +19,7 @@ from ifgen.reading import manifest
 from ifgen.reading.manifest import Manifest
 from ifgen.reading.packages import NODE_FOLDER, PackageFiles
 from ifgen.reading.storage import MAX_GENERATED, read_limited
-from ifgen.writing import interruption, write
+from ifgen.writing import write
 
 Done = TypeVar("Done")
 
@@ -51,7 +52,7 @@ def unless_up_to_date(
     state = _State(request, read_record(request.output))
     up_to_date = state.up_to_date()
     result = up_to_date.result or build(request, up_to_date)
-    with prepare(request, result) as finish, interruption.held("all files had been written"):
+    with prepare(request, result) as finish, signals.delay_interrupt("all files had been written"):
         done = finish()
         if result.resolved is not None:
             save_record(state.record_of(result, result.resolved), request.output)
