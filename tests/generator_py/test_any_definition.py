@@ -20,7 +20,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
 from ifgen.definition.names import attribute_name
-from ifgen.definition.omg_idl import python_names
+from ifgen.definition.omg_idl.build import check_python_names
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
     Array,
@@ -126,7 +126,7 @@ PLACE = Span(Source(Path("Fuzz.idl"), ""), 0, 0)
 def can_be_in_a_class(message: Message) -> bool:
     """Whether its names do not collide; those of .msg files never do."""
     problems = FileProblems(PLACE.source)
-    python_names.check(message.fields, message.constants, problems)
+    check_python_names(message.fields, message.constants, problems)
     return not problems
 
 
