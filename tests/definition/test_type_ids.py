@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import IntEnum
 
 import pytest
-from ifgen.definition import type_ids as ours
+from ifgen.definition import type_description as ours
 from ifgen_runtime.type_support import type_ids as theirs
 
 

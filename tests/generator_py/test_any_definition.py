@@ -20,7 +20,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
 from ifgen.definition.names import attribute_name
-from ifgen.definition.omg_idl import python_names
+from ifgen.definition.omg_idl.build import check_python_names
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
     Array,
@@ -33,10 +33,10 @@ from ifgen.definition.types import (
 )
 from ifgen.diagnostics import Source, Span
 from ifgen.generator_py.imports import IN_MESSAGES
-from ifgen.generator_py.messages import docstrings
 from ifgen.generator_py.messages.package import plan
 from ifgen.generator_py.templates.render import Templates
 from ifgen.generator_py.tests.package import plan_interface_tests
+from ifgen.generator_py.text import docstring, source_literal
 
 BASIC = ("boolean", "octet", "char", "int8", "uint8", "int16", "uint32", "int64", "uint64", "float", "double")
 # Names that generated code itself uses, Python's own, and ordinary ones.
@@ -126,7 +126,7 @@ PLACE = Span(Source(Path("Fuzz.idl"), ""), 0, 0)
 def can_be_in_a_class(message: Message) -> bool:
     """Whether its names do not collide; those of .msg files never do."""
     problems = FileProblems(PLACE.source)
-    python_names.check(message.fields, message.constants, problems)
+    check_python_names(message.fields, message.constants, problems)
     return not problems
 
 
@@ -257,13 +257,13 @@ def test_its_tests_pass(message: Message) -> None:
 
 @given(comments, st.sampled_from([4, 8, 12]))
 def test_docstrings_are_string_literals(text: str, indent: int) -> None:
-    literal = docstrings.docstring(text or "x", indent=indent)
+    literal = docstring(text or "x", indent=indent)
     assert isinstance(ast.literal_eval(literal), str)
     assert all(line == line.rstrip() for line in literal.split("\n"))
 
 
 @given(st.text())
 def test_source_literals_say_what_the_source_says(text: str) -> None:
-    literal = docstrings.source_literal(text)
+    literal = source_literal(text)
     assert ast.literal_eval(literal) == text
     assert all(line == line.rstrip() for line in literal.split("\n"))

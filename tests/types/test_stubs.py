@@ -10,8 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-from ifgen.generator_py.stubs import derive
-from ifgen.generator_py.stubs.package import of_rclpy
+from ifgen.generator_py.stubs import of_rclpy, stub_of
 
 ROOT = Path(__file__).parent.parent.parent
 
@@ -22,8 +21,8 @@ def rclpy() -> Mapping[str, str]:
     return of_rclpy(ROOT / "codegen" / "underlay")
 
 
-def stub_of(source: str) -> str:
-    return ast.unparse(ast.fix_missing_locations(derive.stub(source, hidden="secret")))
+def text_of(source: str) -> str:
+    return ast.unparse(ast.fix_missing_locations(stub_of(source, hidden="secret")))
 
 
 @pytest.mark.parametrize(
@@ -59,7 +58,7 @@ def stub_of(source: str) -> str:
     ],
 )
 def test_what_a_stub_shows(source: str, stub: str) -> None:
-    assert stub_of(source) == stub
+    assert text_of(source) == stub
 
 
 def test_no_module_accepts_any_name(rclpy: Mapping[str, str]) -> None:

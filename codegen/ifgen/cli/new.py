@@ -13,7 +13,7 @@ from ifgen import resources
 from ifgen.cli import skeletons
 from ifgen.command_kit.options import OUTPUT_FOLDER
 from ifgen.config.settings import configured_paths
-from ifgen.definition import names, package_names
+from ifgen.definition import file_names, names
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
 from ifgen.nodl.names import node_name_problem
 from ifgen.reading.packages import FOLDERS, NODE_EXTENSIONS, NODE_FOLDER, find_packages
@@ -113,7 +113,7 @@ def node(name: str, folder: Path | None) -> int:
 
 
 def _check_package(name: str) -> None:
-    problem = package_names.problem(name)
+    problem = file_names.problem(name)
     if problem is not None and problem.severity == "error":
         raise _invalid(problem.message, problem.help)
 

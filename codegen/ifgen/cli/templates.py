@@ -17,8 +17,7 @@ from ifgen.diagnostics import Diagnostic, UsageError, shown_path
 from ifgen.signals import sigterm_raises
 
 if TYPE_CHECKING:
-    from ifgen.generator_py.templates.contexts import Contexts
-    from ifgen.generator_py.templates.listing import Listed
+    from ifgen.generator_py.templates.catalogue import Contexts, Listed
     from ifgen.reading.packages import PackageFiles
     from ifgen.reading.search_path import SearchPath
 
@@ -42,7 +41,7 @@ def print_list(names: tuple[str, ...]) -> int:
     replace single blocks in a template with {% extends "ifgen/NAME" %}.
     """
     from ifgen.generator_py.templates import exports
-    from ifgen.generator_py.templates.listing import listed
+    from ifgen.generator_py.templates.catalogue import listed
 
     found = listed(settle().custom)
     chosen = exports.choose(names or ("all",), (template.name for template in found))
@@ -62,7 +61,7 @@ def export(name: str, folder: Path | None, extend: bool) -> int:
     """
     from ifgen.config.customization import Customization
     from ifgen.generator_py.templates import exports
-    from ifgen.generator_py.templates.listing import listed
+    from ifgen.generator_py.templates.catalogue import listed
 
     ours = {template.name: template.blocks for template in listed(Customization())}
     chosen = exports.choose((name,), ours)
@@ -141,24 +140,24 @@ def context(name: str | None, include: tuple[Path, ...], as_json: bool, schema: 
 
     TYPE is a name such as geometry_msgs/msg/Pose, NODE one such as my_package/my_node.
     """
-    from ifgen.generator_py.templates import contexts
+    from ifgen.generator_py.templates import catalogue
 
     if schema:
-        print(json.dumps(contexts.schema(), indent=2))
+        print(json.dumps(catalogue.schema(), indent=2))
         return 0
     if name is None:
         raise click.UsageError("Missing argument 'TYPE|NODE'", click.get_current_context())
     found = _contexts(name, include)
     if as_json:
-        print(json.dumps(contexts.as_json(found), indent=2))
+        print(json.dumps(catalogue.as_json(found), indent=2))
     else:
-        print("\n".join(contexts.lines(found)).rstrip("\n"))
+        print("\n".join(catalogue.lines(found)).rstrip("\n"))
     return 0
 
 
 def _contexts(name: str, include: tuple[Path, ...]) -> Contexts:
     from ifgen.generator_py.names import interface_name
-    from ifgen.generator_py.templates import contexts
+    from ifgen.generator_py.templates import catalogue
     from ifgen.pipeline import lookup
     from ifgen.reading.packages import find_packages
     from ifgen.reading.search_path import SearchPath
@@ -171,18 +170,18 @@ def _contexts(name: str, include: tuple[Path, ...]) -> Contexts:
         return _contexts_of_node(package, short, search)
     described, registry = lookup.find_type(name, search)
     owner = f"{described.package}/{described.folder}/{interface_name(described)}"
-    return contexts.of_interface(registry.interface(owner), registry)
+    return catalogue.of_interface(registry.interface(owner), registry)
 
 
 def _contexts_of_node(package: PackageFiles, name: str, search: SearchPath) -> Contexts:
     from dataclasses import replace
 
-    from ifgen.generator_py.templates import contexts
+    from ifgen.generator_py.templates import catalogue
     from ifgen.nodl.load import load
 
     files = tuple(file for file in package.known_nodes() if file.name == name)
     [loaded] = load([replace(package, nodes=files)], search).packages
-    return contexts.of_node(loaded, loaded.nodes[0])
+    return catalogue.of_node(loaded, loaded.nodes[0])
 
 
 def _is_in_use(folder: Path) -> bool:

@@ -6,10 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import assert_never
 
 from ifgen.definition import derive, explain, names, rules
-from ifgen.definition.escapes import BadValue
 from ifgen.definition.impossible import check_sizes
 from ifgen.definition.interfaces import Constant, Field, Folder, Interface, Message, Scalar
-from ifgen.definition.literals import default_value, scalar_value
+from ifgen.definition.literals import BadValue, default_value, scalar_value
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.spelling import PRIMITIVES, BadType, field_type
 from ifgen.definition.types import FieldType

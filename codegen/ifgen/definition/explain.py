@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from ifgen.definition import rules
-from ifgen.definition.escapes import BadValue
+from ifgen.definition.literals import BadValue
 from ifgen.definition.names import is_constant_name, is_field_name, snake_case
 from ifgen.definition.spelling import PRIMITIVES, BadType
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TypeAlias, cast
 
-from ifgen.definition import build, dependencies, derive, files, names, package_names, references
+from ifgen.definition import build, dependencies, derive, file_names, names, references
 from ifgen.definition.impossible import check_cycles, check_totals
 from ifgen.definition.interfaces import (
     Action,
@@ -162,7 +162,7 @@ class _Resolver:
         """Take note of a package, and of what is wrong with its name."""
         if package.name not in self._packages:
             self._packages[package.name] = package
-            self._report(package_names.check(package), requested)
+            self._report(file_names.check_package(package), requested)
 
     def _look_at_descriptions(self, package: PackageFiles) -> None:
         """Look at package.xml and CMakeLists.txt too: there may be nothing wrong but a comment of no use."""
@@ -204,8 +204,8 @@ class _Resolver:
             return
         problems = self._problems_of[source] = FileProblems(source, with_warnings=requested)
         problems.sees_all = not package.partial
-        problems.extend(files.check_file(file, source), 0)
-        if (twins := files.two_forms(file, source)) is not None:
+        problems.extend(file_names.check_file(file, source), 0)
+        if (twins := file_names.two_forms(file, source)) is not None:
             stem = file.path.with_suffix("")
             if stem not in self._twins:
                 problems.extend([twins], 0)
@@ -238,12 +238,12 @@ class _Resolver:
         for part in _described(interface):
             first = self._interfaces.get(part.type_name) or self._messages.get(part.type_name)
             if first is not None:
-                problems.error(files.duplicate_type, part.type_name, source, first.source)
+                problems.error(file_names.duplicate_type, part.type_name, source, first.source)
                 return
         module = (interface.package, interface.folder, names.snake_case(interface.name))
         other = self._modules.setdefault(module, interface)
         if other is not interface:
-            problems.error(files.same_module, interface.type_name, other.type_name, source, other.source)
+            problems.error(file_names.same_module, interface.type_name, other.type_name, source, other.source)
         self._interfaces[interface.type_name] = interface
         self._messages.update((part.type_name, part) for part in _parts(interface))
         self._pending.append(interface)

@@ -10,20 +10,45 @@ import re
 from collections.abc import Sequence
 from typing import Final
 
-from ifgen.definition.escapes import carried, interpreted, is_carried
 from ifgen.definition.interfaces import Constant, Message, Scalar
+from ifgen.definition.literals import carried, interpreted, is_carried
 from ifgen.definition.names import PLACEHOLDER
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
-    Array,
     BasicType,
     BoundedSequence,
     FieldType,
-    UnboundedSequence,
-    ValueType,
+    element_of,
 )
-from ifgen.definition.units import is_unit
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
+
+_PREFIXED: Final = frozenset("m g s A K N J W V F T H C L Pa Hz rad bar Ah Wh eV Ohm \u03a9 lx lm".split())  # noqa: SIM905
+_PREFIXES: Final = ("G", "M", "k", "h", "d", "c", "m", "u", "\u00b5", "\u03bc", "n", "p", "")
+_WORDS: Final = frozenset(
+    """
+    deg min h hr sec msec usec nsec rpm px dB dBm bps kbps Mbps kB KB MB lb ft mi kn kt Nm Ga Gs degC degF
+    meter metre second minute hour degree radian percent pixel newton kelvin celsius gram watt volt ampere
+    hertz joule knot gauss tesla pascal feet inch mile millimeter centimeter kilometer millisecond
+    microsecond nanosecond
+    """.split()  # noqa: SIM905  # a list of fifty strings is harder to read
+)
+"""Without those that are as often an index: `bit`, `byte`, `in`."""
+
+_BETWEEN: Final = re.compile(r"[\s*/^\u00b7.()+-]|\d+|\*\*|\bper\b")
+_SIGNS: Final = frozenset("%\u00b0\u2103")
+
+
+def is_unit(text: str) -> bool:
+    """Whether a text is made of names of units: `rad`, `m/s^2`, `milliseconds`; not `i`, and not `0`."""
+    parts = [part for part in _BETWEEN.split(text) if part]
+    return bool(parts) and all(map(_is_name, parts))
+
+
+def _is_name(part: str) -> bool:
+    if part in _SIGNS or part in _WORDS or part.lower().removesuffix("s") in _WORDS:
+        return True
+    return any(part.startswith(prefix) and part[len(prefix) :] in _PREFIXED for prefix in _PREFIXES)
+
 
 _C_KEYWORDS: Final = frozenset(
     """
@@ -104,7 +129,7 @@ def check_value(
     text: str, type_: FieldType, value: Scalar | tuple[Scalar, ...], span: Span, problems: FileProblems
 ) -> None:
     """Warn of a value that is not what its text looks like."""
-    if isinstance(_element_type(type_), BasicType):
+    if isinstance(element_of(type_), BasicType):
         check_float32(type_, value, span, problems)
     else:
         _check_string(text, value, span, problems)
@@ -119,7 +144,7 @@ def check_float32(
 ) -> None:
     """Warn of a number that is too large for its type; `wider` is what the file calls the wider one."""
     values = value if isinstance(value, tuple) else (value,)
-    if _element_type(type_) == BasicType("float") and any(
+    if element_of(type_) == BasicType("float") and any(
         isinstance(item, float) and abs(item) >= _LARGEST_FLOAT32 for item in values
     ):
         problems.warning(
@@ -256,10 +281,6 @@ def _same_constant(constant: Constant, first: Constant) -> Diagnostic:
         "give one of the two another comment: then rosidl keeps them apart",
         "warning",
     )
-
-
-def _element_type(type_: FieldType) -> ValueType:
-    return type_.value_type if isinstance(type_, Array | BoundedSequence | UnboundedSequence) else type_
 
 
 def _is_closed(text: str) -> bool:

@@ -104,3 +104,8 @@ COLLECTIONS: Final = (Array, BoundedSequence, UnboundedSequence)
 """The same classes for `isinstance`, where `A | B` would make a union at each call."""
 
 FieldType: TypeAlias = ValueType | CollectionType
+
+
+def element_of(type_: FieldType) -> ValueType:
+    """The type of one element of an array or a sequence; of another field, its type."""
+    return type_.value_type if isinstance(type_, COLLECTIONS) else type_

@@ -13,8 +13,7 @@ from importlib.util import find_spec
 from typing import Any, Final
 
 from ifgen.definition.described.reading import ACTION_PARTS, SERVICE_PARTS, read
-from ifgen.definition.type_description import type_hash
-from ifgen.definition.type_ids import TypeId
+from ifgen.definition.type_description import TypeId, type_hash
 from ifgen.dynamic.asking import Asking, DescribeError, Endpoint, TypeDescription, asking
 from ifgen.dynamic.describing import endpoints_of
 

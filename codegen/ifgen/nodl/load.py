@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from ifgen.definition import package_names
+from ifgen.definition import file_names
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.resolve import resolve
@@ -53,7 +53,7 @@ class _Loader:
         """The nodes of a package, except those whose files cannot be read."""
         if package.declared is not None:
             self._problems(package.declared.source)
-        self._report(package_names.check(package))
+        self._report(file_names.check_package(package))
         read = {
             include.real(file.path): (file, found) for file in package.nodes if (found := self._read(file))
         }

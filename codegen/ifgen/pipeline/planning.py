@@ -187,8 +187,7 @@ class _Outputs:
 
 def _views(resolved: ResolvedInput) -> Iterator[PackageView]:
     # Few users have outputs of their own.
-    from ifgen.generator_py.outputs.interfaces import interface_view
-    from ifgen.generator_py.outputs.nodes import node_view
+    from ifgen.generator_py.outputs.build import interface_view, node_view
     from ifgen.generator_py.outputs.view import PackageView
 
     for target in resolved.targets:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ifgen import resources
 from ifgen.diagnostics import Diagnostic, UsageError, shown_path
-from ifgen.generator_py.stubs import package
+from ifgen.generator_py import stubs
 from ifgen.pipeline.stages import GENERATOR
 from ifgen.reading import manifest
 from ifgen.writing import transaction, write
@@ -36,15 +36,15 @@ def are_there(directory: Path) -> bool:
 
 
 def _packages(directory: Path, output: Path) -> Iterator[OutputPackage]:
-    yield OutputPackage("rclpy", package.of_rclpy(resources.underlay()))
+    yield OutputPackage("rclpy", stubs.of_rclpy(resources.underlay()))
     generated = resources.bundled_generated()
     for name in sorted(resources.packages_of_ros()):
         if not _is_generated(output / name):
-            yield OutputPackage(name, package.of_messages(generated / name))
+            yield OutputPackage(name, stubs.of_messages(generated / name))
         elif _is_generated(directory / name):
             yield OutputPackage(name, {})  # from before the project had its own
     for folder in sorted(path.parent for path in resources.libraries().glob("*/__init__.py")):
-        yield OutputPackage(folder.name, package.of_library(folder))
+        yield OutputPackage(folder.name, stubs.of_library(folder))
 
 
 def _is_generated(folder: Path) -> bool:

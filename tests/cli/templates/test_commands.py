@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from ifgen import resources
 from ifgen.generator_py.outputs.view import InterfaceView, PackageView
-from ifgen.generator_py.templates import contexts
+from ifgen.generator_py.templates import catalogue
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
 from pydantic import TypeAdapter
 
@@ -241,7 +241,7 @@ def test_context_of_a_node(ifgen: Run, project: Path) -> None:
 
 def test_the_schema_describes_every_context(ifgen: Run, project: Path) -> None:
     schema = json.loads(ifgen("templates", "context", "--schema").out)
-    assert schema == contexts.schema()
+    assert schema == catalogue.schema()
     assert schema["properties"].keys() == {*TEMPLATES, *(f"outputs per {per}" for per in OUTPUT_VARIABLES)}
     for name, definition in schema["$defs"].items():
         assert definition.get("description"), name

@@ -10,7 +10,7 @@ from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
 from ifgen.definition.types import BasicType, UnboundedString
 from ifgen.generator_py.messages.package import plan
-from ifgen.generator_py.outputs.interfaces import interface_view
+from ifgen.generator_py.outputs.build import interface_view
 from ifgen.generator_py.templates.check.syntax import _OffsetLexer
 from ifgen.generator_py.templates.render import _environment_for
 

@@ -11,10 +11,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final, cast
 
 from ifgen.definition import names
-from ifgen.definition.described.defaults import default_value
-from ifgen.definition.described.limits import check_limits
-from ifgen.definition.described.types import BadDescription, field_type
-from ifgen.definition.escapes import BadValue
+from ifgen.definition.described.types import BadDescription, check_limits, field_type
+from ifgen.definition.described.values import default_value
 from ifgen.definition.impossible import check_cycles
 from ifgen.definition.interfaces import (
     Action,
@@ -24,6 +22,7 @@ from ifgen.definition.interfaces import (
     Registry,
     Service,
 )
+from ifgen.definition.literals import BadValue
 from ifgen.definition.references import references
 from ifgen.definition.type_description import Described, TypeHashes
 from ifgen.definition.types import BasicType, NamespacedType

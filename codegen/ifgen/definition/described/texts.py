@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from ifgen.definition.described.limits import check_limits
-from ifgen.definition.described.types import BadDescription
+from ifgen.definition.described.types import BadDescription, check_limits
 from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.resolve import resolve
 from ifgen.definition.type_description import referenced_types

@@ -1,11 +1,17 @@
-"""The types of fields in a type description, by their numbers."""
+"""The types of fields in a type description, by their numbers, and limits for types from elsewhere.
+
+The limits are for nesting that recursion can follow, and for arrays that fit into memory.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Final
 
-from ifgen.definition.type_ids import Kind, TypeId
+from ifgen.definition.impossible import needed_first, value_count
+from ifgen.definition.interfaces import Message
+from ifgen.definition.references import references
+from ifgen.definition.type_description import Kind, TypeId
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -86,3 +92,27 @@ def _number(document: Mapping[str, object], key: str, where: str) -> int:
     if type(value) is not int or not 0 <= value <= _LARGEST:
         raise BadDescription(f"{where} has no number for '{key}'")
     return value
+
+
+_DEEPEST: Final = 64
+"""Levels of nesting: the deepest interface of ROS has 7."""
+
+_MOST_VALUES: Final = 2**27
+"""Values in a default message, those in its arrays included."""
+
+
+def check_limits(messages: Iterable[Message]) -> None:
+    """Raise BadDescription if a message is nested too deeply or has too large arrays.
+
+    The messages are a closed set without cycles.
+    """
+    levels: dict[str, int] = {}
+    values: dict[str, int] = {}
+    for message in needed_first({message.type_name: message for message in messages}):
+        name = message.type_name
+        levels[name] = 1 + max((levels[type_.type_name] for _, type_ in references(message)), default=0)
+        values[name] = sum(value_count(field.type, values) for field in message.fields)
+        if levels[name] > _DEEPEST:
+            raise BadDescription(f"{name} is nested more than {_DEEPEST} levels deep")
+        if values[name] > _MOST_VALUES:
+            raise BadDescription(f"a default message of {name} has more than {_MOST_VALUES} values")

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import math
 from typing import Final, TypeAlias, cast
 
-from ifgen.definition.escapes import BadValue
 from ifgen.definition.interfaces import Plain, Scalar
-from ifgen.definition.literals import INTEGER_RANGES, check_count
+from ifgen.definition.literals import INTEGER_RANGES, BadValue, check_count
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -18,6 +18,7 @@ from ifgen.definition.types import (
     NamespacedType,
     UnboundedSequence,
     ValueType,
+    element_of,
 )
 
 Value: TypeAlias = Scalar | tuple[Scalar, ...]
@@ -27,7 +28,7 @@ _LARGEST_CHARACTER: Final = 255
 
 def plain(value: Value, type_: FieldType) -> Plain | list[Plain]:
     """The plain form of a value of this type."""
-    element = type_.value_type if isinstance(type_, Array | BoundedSequence | UnboundedSequence) else type_
+    element = element_of(type_)
     if isinstance(value, tuple):
         return [_plain(item, element) for item in value]
     return _plain(value, element)
@@ -79,3 +80,46 @@ def _integer(value: object, low: int, high: int) -> int:
     if type(value) is not int or not low <= value <= high:
         raise BadValue(f"expected an integer between {low} and {high}")
     return value
+
+
+_LONGEST: Final = 2**20
+_LONGEST_NUMBER: Final = 400
+
+
+def default_value(text: str, type_: FieldType) -> Value:
+    """The value that a text stands for in a field of this type. Raises BadValue."""
+    if len(text) > _LONGEST:
+        raise BadValue("it is too long")
+    if not isinstance(type_, Array | BoundedSequence | UnboundedSequence):
+        return from_plain(_item(text, type_), type_)
+    if isinstance(type_.value_type, BasicType):
+        inside = text.removeprefix("(").removesuffix(")").removesuffix(",")
+        if text[:1] != "(" or text[-1:] != ")":
+            raise BadValue("expected a tuple")
+        element = type_.value_type
+        return from_plain([_item(item.strip(), element) for item in inside.split(",") if inside], type_)
+    try:
+        values: object = ast.literal_eval(text)
+    except (ValueError, SyntaxError, MemoryError, RecursionError):
+        raise BadValue("expected a tuple of strings") from None
+    if not isinstance(values, tuple):
+        raise BadValue("expected a tuple of strings")
+    return from_plain(list(cast("tuple[object, ...]", values)), type_)
+
+
+def _item(text: str, type_: FieldType) -> object:
+    """The plain value of a text; strings are themselves."""
+    if not isinstance(type_, BasicType):
+        return text
+    try:
+        if len(text) > _LONGEST_NUMBER:
+            raise ValueError
+        match type_.typename:
+            case "boolean":
+                return {"True": True, "False": False}[text]
+            case "float" | "double":
+                return float(text)
+            case _:
+                return int(text)
+    except (ValueError, KeyError):
+        raise BadValue(f"expected a value of type {type_.typename}") from None

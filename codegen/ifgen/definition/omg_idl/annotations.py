@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from ifgen.definition.escapes import BadValue
 from ifgen.definition.explain import bad_value
 from ifgen.definition.interfaces import Annotation, Plain
+from ifgen.definition.literals import BadValue
 from ifgen.definition.omg_idl.values import plain_value
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Source, Span

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import keyword
 from collections.abc import Callable, Iterable
 
 from ifgen.definition import derive, names, rules
-from ifgen.definition.escapes import BadValue
 from ifgen.definition.explain import bad_value, duplicate
 from ifgen.definition.interfaces import Constant, Field, Folder, Interface, Message, Scalar
-from ifgen.definition.omg_idl import explain_structure, explain_types, python_names, structure
+from ifgen.definition.literals import BadValue
+from ifgen.definition.omg_idl import mistakes
 from ifgen.definition.omg_idl.annotations import read_annotations
-from ifgen.definition.omg_idl.contents import SUFFIXES, Contents, Placed, contents_of
+from ifgen.definition.omg_idl.contents import SUFFIXES, Contents, Placed, check_rest, contents_of, parts_of
 from ifgen.definition.omg_idl.types import Types
 from ifgen.definition.omg_idl.values import constant_value, default_value
 from ifgen.definition.problems import FileProblems
@@ -51,8 +52,8 @@ def interface(
         contents = Contents()
         structs: list[Placed[StructNode] | None] = [None] * len(SUFFIXES[folder])
     else:
-        structs = structure.parts(contents, source, package, folder, name, problems)
-        structure.check_rest(contents, source, problems)
+        structs = parts_of(contents, source, package, folder, name, problems)
+        check_rest(contents, source, problems)
     _check_includes(contents.includes, source, problems, is_there)
     builder = _Builder(source, package, folder, contents, problems)
     parts = [
@@ -121,7 +122,7 @@ class _Builder:
             return Message(self._package, self._folder, name, (), span=start, source=self._source)
         node = placed.node
         if not node.members:
-            self._problems.error(explain_structure.empty_struct, self._source, node)
+            self._problems.error(mistakes.empty_struct, self._source, node)
         fields: dict[str, Field] = {}
         for member in node.members:
             self._member(member, fields)
@@ -133,7 +134,7 @@ class _Builder:
         for field in fields.values():
             if field.span is not None and rules.is_troublesome(field.name):
                 self._problems.warning(rules.field_name, field.name, field.span)
-        python_names.check(fields.values(), constants.values(), self._problems)
+        check_python_names(fields.values(), constants.values(), self._problems)
         said = read_annotations(node.annotations, self._source, self._problems)
         return Message(
             self._package,
@@ -225,7 +226,7 @@ class _Builder:
             and isinstance(value, float)
             and not (is_constant and type_ == BasicType("double"))
         ):
-            self._problems.warning(explain_types.integer_for_float, span, type_ == BasicType("float"))
+            self._problems.warning(mistakes.integer_for_float, span, type_ == BasicType("float"))
 
     def _type_text(self, node: TypeNode, declarator: DeclaratorNode | None = None) -> str:
         text = " ".join(self._source.text[node.start : node.end].split())
@@ -242,4 +243,47 @@ def _mixed_declarators(node: MemberNode, source: Source) -> Diagnostic:
         Label(Span(source, last.start, last.start + len(last.name)), "rosidl of Jazzy makes it an array too"),
         (Label(Span(source, array.start, array.start + len(array.name)), "the array"),),
         "write a member for each name: newer versions of rosidl read this differently",
+    )
+
+
+def check_python_names(
+    fields: Iterable[Field], constants: Iterable[Constant], problems: FileProblems
+) -> None:
+    """Report names that are taken: by the class itself, by another field, or by a default value."""
+    taken: dict[str, Span | None] = {"SLOT_TYPES": None}
+    fields = tuple(fields)
+    with_default = {field.name.upper() for field in fields if field.default_value is not None}
+    for field in fields:
+        needed = [names.attribute_name(field)]
+        if field.name.upper() in with_default:  # the class looks for a default by that name
+            needed.append(names.default_name(field))
+        for name in needed:
+            if name in taken:
+                problems.error(_taken, "field", field.name, name, field.span, taken[name])
+            taken.setdefault(name, field.span)
+    taken["get_fields_and_field_types"] = None
+    for constant in constants:
+        if keyword.iskeyword(constant.name):
+            problems.error(_keyword, constant)
+        elif constant.name in taken:
+            problems.error(
+                _taken, "constant", constant.name, constant.name, constant.span, taken[constant.name]
+            )
+
+
+def _keyword(constant: Constant) -> Diagnostic:
+    assert constant.span is not None
+    message = f"no constant of a Python class can be called '{constant.name}'"
+    return Diagnostic("keyword-name", message, Label(constant.span), help="rename the constant")
+
+
+def _taken(what: str, shown: str, name: str, span: Span | None, other: Span | None) -> Diagnostic:
+    assert span is not None
+    attribute = f"`{name}`" if name == shown else f"`{name}` of '{shown}'"
+    return Diagnostic(
+        "name-clash",
+        f"the {what} {attribute} has the name of something else in its Python class",
+        Label(span),
+        (Label(other, "this has it"),) if other else (),
+        "rename one of them" if other else f"rename the {what}",
     )

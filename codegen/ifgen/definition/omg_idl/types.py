@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from ifgen.definition.impossible import check_sizes
-from ifgen.definition.omg_idl import explain_types as explain
+from ifgen.definition.omg_idl import mistakes
 from ifgen.definition.omg_idl.values import size_of
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
@@ -123,7 +123,7 @@ class Types:
             case StringNode(wide=wide):
                 return UnboundedWString() if wide else UnboundedString()
             case _:
-                self._problems.error(explain.constant_type, self._source, type_)
+                self._problems.error(mistakes.constant_type, self._source, type_)
                 return None
 
     def _define(self, node: TypedefNode) -> None:
@@ -133,7 +133,7 @@ class Types:
         if not _same(first[1], meaning):
             span = self._span(node.declarator.start, name)
             before = self._span(first[0].declarator.start, name)
-            self._problems.error(explain.typedef_again, name, span, before)
+            self._problems.error(mistakes.typedef_again, name, span, before)
 
     def _span(self, start: int, text: str) -> Span:
         return Span(self._source, start, start + len(text))
@@ -150,13 +150,13 @@ class Types:
             case SequenceNode():
                 return self._sequence(node)
             case FixedNode():
-                self._problems.error(explain.no_fixed, self._source, node)
+                self._problems.error(mistakes.no_fixed, self._source, node)
                 return None
 
     def _basic(self, node: BasicNode) -> BasicType | None:
         name = BASIC_TYPES.get(node.words)
         if name is None:
-            self._problems.error(explain.no_basic_type, self._source, node)
+            self._problems.error(mistakes.no_basic_type, self._source, node)
             return None
         return BasicType(name)
 
@@ -164,14 +164,14 @@ class Types:
         if len(node.parts) == 1 and not node.absolute:
             return _Named(node)
         if len(node.parts) != 3 or node.parts[1] not in ("msg", "srv", "action"):
-            self._problems.error(explain.wrong_path, self._source, node)
+            self._problems.error(mistakes.wrong_path, self._source, node)
             return None
         package, folder, name = node.parts
         if package == self._package and name in self._enums:
-            self._problems.error(explain.is_enum, self._source, node, self._enums[name])
+            self._problems.error(mistakes.is_enum, self._source, node, self._enums[name])
             return None
         if folder != "msg" and name.endswith(("_Event", "_FeedbackMessage")):
-            self._problems.error(explain.derived_type, self._source, node)
+            self._problems.error(mistakes.derived_type, self._source, node)
             return None
         return NamespacedType(package, folder, name)
 
@@ -187,7 +187,7 @@ class Types:
         element = None if isinstance(node.element, SequenceNode) else self._written(node.element)
         maximum = None if node.bound is None else self._size(node.bound)
         if isinstance(node.element, SequenceNode) or isinstance(element, _Collection):
-            self._problems.error(explain.nested_collection, self._source, node)
+            self._problems.error(mistakes.nested_collection, self._source, node)
             return None
         if element is None or (node.bound is not None and maximum is None):
             return None
@@ -195,7 +195,7 @@ class Types:
             # rosidl_parser applies the bound of a wstring to a sequence without one; so does the hash.
             maximum = element.maximum_size
             span = Span(self._source, node.start, node.end)
-            self._problems.warning(explain.wstring_sequence, span, maximum)
+            self._problems.warning(mistakes.wstring_sequence, span, maximum)
         return _Collection(element, maximum=maximum)
 
     def _with_sizes(
@@ -205,14 +205,14 @@ class Types:
         if written is None or not sizes:
             return written
         if len(sizes) > 1 or isinstance(written, _Collection):
-            self._problems.error(explain.nested_collection, self._source, node, declarator)
+            self._problems.error(mistakes.nested_collection, self._source, node, declarator)
             return None
         return None if sizes[0] is None else _Collection(written, size=sizes[0])
 
     def _size(self, node: ValueNode) -> int | None:
         size = size_of(node)
         if size is None:
-            self._problems.error(explain.wrong_size, self._source, node)
+            self._problems.error(mistakes.wrong_size, self._source, node)
         return size
 
     def _resolved(self, written: _Meaning, node: TypeNode) -> FieldType | None:
@@ -226,10 +226,10 @@ class Types:
                 if isinstance(meaning, _Named):
                     meaning = self._meaning(meaning)
         if isinstance(meaning, _Collection):
-            self._problems.error(explain.nested_collection, self._source, node)
+            self._problems.error(mistakes.nested_collection, self._source, node)
             return None
         if isinstance(meaning, _Named):
-            self._problems.error(explain.typedef_of_typedef, self._source, node, meaning.node)
+            self._problems.error(mistakes.typedef_of_typedef, self._source, node, meaning.node)
             return None
         if meaning is None:
             return None
@@ -242,7 +242,7 @@ class Types:
         if name in self._typedefs:
             return self._typedefs[name][1]
         self._problems.error(
-            explain.unknown_name, self._source, named.node, self._typedefs, self._enums, self._package
+            mistakes.unknown_name, self._source, named.node, self._typedefs, self._enums, self._package
         )
         return None
 

@@ -13,9 +13,8 @@ import warnings
 from collections.abc import Iterable
 from typing import Final, cast
 
-from ifgen.definition.escapes import BadValue, read_idl
 from ifgen.definition.interfaces import Plain, Scalar
-from ifgen.definition.literals import INTEGER_RANGES, check_count
+from ifgen.definition.literals import INTEGER_RANGES, BadValue, check_count, read_idl
 from ifgen.definition.types import (
     Array,
     BasicType,

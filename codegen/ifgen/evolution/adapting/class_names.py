@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ifgen.definition.interfaces import Message
 from ifgen.evolution.adapting.versions import TwoVersions
-from ifgen.generator_py.adapters.frozen import short
+from ifgen.generator_py.adapters import short
 from ifgen.generator_py.imports import Names
 from ifgen.generator_py.names import interface_name
 

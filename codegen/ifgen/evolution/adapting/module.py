@@ -11,7 +11,7 @@ from ifgen.evolution.adapting.class_names import ClassNames
 from ifgen.evolution.adapting.steps import PARAMETERS, Function, Functions, Step
 from ifgen.evolution.adapting.versions import TwoVersions
 from ifgen.evolution.edits import Versions
-from ifgen.generator_py.adapters.context import (
+from ifgen.generator_py.adapters import (
     AdapterModule,
     FunctionText,
     LostText,

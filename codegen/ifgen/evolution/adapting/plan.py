@@ -15,8 +15,7 @@ from ifgen.evolution.adapting.steps import Functions
 from ifgen.evolution.adapting.tests import adapter_tests
 from ifgen.evolution.adapting.versions import Today, TwoVersions
 from ifgen.evolution.interfaces import versions as parts_of
-from ifgen.generator_py.adapters.context import AdapterPackage, AdapterTests
-from ifgen.generator_py.adapters.frozen import plan_frozen, short
+from ifgen.generator_py.adapters import AdapterPackage, AdapterTests, plan_frozen, short
 from ifgen.generator_py.artifact import Artifact
 
 

@@ -11,8 +11,7 @@ from ifgen.evolution.adapting.sample import Sample, is_too_large
 from ifgen.evolution.adapting.steps import Function, Functions
 from ifgen.evolution.adapting.versions import TwoVersions
 from ifgen.evolution.edits import Versions
-from ifgen.generator_py.adapters.context import AdapterCase, AdapterTests, CheckText
-from ifgen.generator_py.adapters.frozen import OldStrategies
+from ifgen.generator_py.adapters import AdapterCase, AdapterTests, CheckText, OldStrategies
 from ifgen.generator_py.imports import import_statement
 from ifgen.generator_py.tests.strategies import Strategies, enclosed
 

@@ -12,7 +12,7 @@ from ifgen.definition.types import CollectionType, FieldType, NamespacedType
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.evolution.adapting.meaning import question
 from ifgen.evolution.messages import paired_fields
-from ifgen.generator_py.adapters.frozen import FrozenFacts
+from ifgen.generator_py.adapters import FrozenFacts
 from ifgen.generator_py.names import interface_name
 
 Today = Callable[[str], "tuple[Interface, Registry] | None"]

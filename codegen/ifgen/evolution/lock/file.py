@@ -14,7 +14,6 @@ from typing import Final, NoReturn, cast
 
 from ifgen.definition import derive, names
 from ifgen.definition.described.values import Value
-from ifgen.definition.escapes import BadValue
 from ifgen.definition.interfaces import (
     Constant,
     Field,
@@ -23,6 +22,7 @@ from ifgen.definition.interfaces import (
     Message,
     Registry,
 )
+from ifgen.definition.literals import BadValue
 from ifgen.definition.types import BasicType, FieldType, UnboundedString, UnboundedWString
 from ifgen.diagnostics import Diagnostic, InputError, Source, Span, shorten, shown_path
 from ifgen.evolution.lock.checks import AGAIN, check, invalid

@@ -14,7 +14,7 @@ from typing import Final
 
 from ifgen.definition import names
 from ifgen.definition.described.values import Value, from_plain, plain
-from ifgen.definition.escapes import BadValue
+from ifgen.definition.literals import BadValue
 from ifgen.definition.spelling import PRIMITIVES, spelled
 from ifgen.definition.types import (
     Array,

@@ -4,19 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ifgen.definition.interfaces import Field, Message, Registry
+from ifgen.definition.interfaces import Constant, Field, Message, Registry
 from ifgen.definition.names import attribute_name, default_name
+from ifgen.definition.spelling import spelled
 from ifgen.definition.type_description import TypeHashes
-from ifgen.definition.types import Array, BasicType, BoundedSequence, NamespacedType, UnboundedSequence
+from ifgen.definition.types import (
+    COLLECTIONS,
+    Array,
+    BasicType,
+    BoundedSequence,
+    NamespacedType,
+    UnboundedSequence,
+)
 from ifgen.generator_py.codec.plan import Extents, plan
 from ifgen.generator_py.codec.program import NUMBERS
 from ifgen.generator_py.codec.python.text import CodecText, render
 from ifgen.generator_py.imports import IN_MESSAGES, Import, Scope
 from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass, ViewsText
-from ifgen.generator_py.messages.docstrings import constant_documentation, docstring, field_documentation
 from ifgen.generator_py.messages.enums import enums
 from ifgen.generator_py.messages.fields import Reference, default_literal, literal, python_field, rosidl_text
-from ifgen.generator_py.names import class_reference, slot_name
+from ifgen.generator_py.names import class_reference
+from ifgen.generator_py.text import docstring
 
 # The classes of `ifgen_runtime.views`, by the dtype that their names spell in lower case.
 _ARRAYS = {name.lower().removesuffix("array"): name for name in IN_MESSAGES if name.endswith("Array")}
@@ -102,7 +110,7 @@ def message_class(
         renamed=tuple((field.name, field.attribute) for field in fields if field.name != field.attribute),
         constants=tuple(_constants(message, scope)),
         lower_constants=_tuple(lower) if (lower := _lower_constants(message)) else "",
-        defaults=tuple(_defaults(message, scope, reference)),
+        defaults=tuple(_defaults(message, fields, scope)),
         enums=enums(message, scope),
         views=views(message, facts, scope, reference),
         codec=codec,
@@ -125,7 +133,8 @@ def _imported(types: Iterable[NamespacedType], home: Message, facts: Facts) -> I
 
 
 def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
-    python, attribute = python_field(field, scope, reference), attribute_name(field)
+    attribute = attribute_name(field)
+    python = python_field(field, attribute, scope, reference)
     getter = failed = ""
     if python.converted:
         getter = f"@{scope('property')}\n    def {attribute}(self) -> {python.annotation}:"
@@ -133,8 +142,8 @@ def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
     return FieldText(
         name=field.name,
         attribute=attribute,
-        private=slot_name(field),
-        docstring=docstring(field_documentation(field), indent=8 if python.converted else 4),
+        private=f"_{attribute}",
+        docstring=docstring(_field_documentation(field), indent=8 if python.converted else 4),
         getter=getter,
         failed=failed,
         python=python,
@@ -153,19 +162,33 @@ def _lower_constants(message: Message) -> tuple[str, ...]:
 
 def _constants(message: Message, scope: Scope) -> Iterator[ConstantText]:
     for constant in message.constants:
-        text = constant_documentation(constant)
+        text = _constant_documentation(constant)
         value = literal(constant.value, scope)
         yield ConstantText(constant.name, scope("Final"), value, docstring(text, indent=4) if text else "")
 
 
-def _defaults(message: Message, scope: Scope, reference: Reference) -> Iterator[ConstantText]:
-    for field in message.fields:
+def _defaults(message: Message, fields: Iterable[FieldText], scope: Scope) -> Iterator[ConstantText]:
+    for field, text in zip(message.fields, fields, strict=True):
         if field.default_value is not None:
             value = default_literal(field, scope)
-            if isinstance(field.type, Array | BoundedSequence | UnboundedSequence):
+            if isinstance(field.type, COLLECTIONS):
                 value = f"{scope('mutable_default')}(lambda: {value})"
-            annotation = python_field(field, scope, reference).annotation
-            yield ConstantText(default_name(field), f"{scope('ClassVar')}[{annotation}]", value, "")
+            annotation = f"{scope('ClassVar')}[{text.python.annotation}]"
+            yield ConstantText(default_name(field), annotation, value, "")
+
+
+def _field_documentation(field: Field) -> str:
+    """The definition's comment on a field, and a last line with its type (bounds included) and unit."""
+    last = f"`{spelled(field.type)}`"
+    if field.unit:
+        last += f", unit {field.unit}"
+    return f"{field.documentation}\n\n{last}." if field.documentation else f"{last}."
+
+
+def _constant_documentation(constant: Constant) -> str:
+    """The definition's comment on a constant, and a last line with its unit if it has one."""
+    unit = f"Unit {constant.unit}." if constant.unit else ""
+    return "\n\n".join(filter(None, (constant.documentation, unit)))
 
 
 def _tuple(names: Iterable[str]) -> str:

@@ -13,15 +13,17 @@ from collections.abc import Callable, Iterator, Mapping
 
 from ifgen.definition.interfaces import Constant, Field, Message
 from ifgen.definition.names import attribute_name
-from ifgen.definition.types import Array, BoundedSequence, FieldType, UnboundedSequence
+from ifgen.definition.types import ValueType, element_of
 from ifgen.generator_py.messages.context import EnumText
-from ifgen.generator_py.messages.docstrings import docstring
 from ifgen.generator_py.names import enum_name
+from ifgen.generator_py.text import docstring
 
 
 def enums(message: Message, spelling: Callable[[str], str] = str) -> tuple[EnumText, ...]:
     """The enumerations of a message, in the order of the fields; `spelling` spells names of Python."""
     found = list(_enums(message, spelling))
+    if not found:
+        return ()
     # `a_1` and `a1` would have the same name: neither gets it. In an .idl file a field or a constant may have
     # it.
     names = Counter(enum.name for enum in found)
@@ -34,7 +36,7 @@ def values(message: Message) -> Iterator[tuple[Field, tuple[Constant, ...]]]:
     """The fields that own constants, two or more, and these."""
     if not message.constants:
         return
-    fields = {(_prefix(field), _element_type(field)): field for field in reversed(message.fields)}
+    fields = {(_prefix(field), element_of(field.type)): field for field in reversed(message.fields)}
     owned: dict[str, list[Constant]] = {}
     for constant in message.constants:
         owner = _owner(constant, fields)
@@ -58,7 +60,7 @@ def _enums(message: Message, spelling: Callable[[str], str]) -> Iterator[EnumTex
         )
 
 
-def _owner(constant: Constant, fields: Mapping[tuple[str, FieldType], Field]) -> Field | None:
+def _owner(constant: Constant, fields: Mapping[tuple[str, ValueType], Field]) -> Field | None:
     """The field with the longest prefix that the constant has; `fields` has them by prefix and type."""
     if not isinstance(constant.value, int) or isinstance(constant.value, bool):
         return None
@@ -68,12 +70,6 @@ def _owner(constant: Constant, fields: Mapping[tuple[str, FieldType], Field]) ->
         if field is not None:
             return field
     return None
-
-
-def _element_type(field: Field) -> FieldType:
-    if isinstance(field.type, Array | BoundedSequence | UnboundedSequence):
-        return field.type.value_type
-    return field.type
 
 
 def _prefix(field: Field) -> str:

@@ -6,30 +6,37 @@ from array import array
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from ifgen.definition.interfaces import Field, Scalar
-from ifgen.definition.names import attribute_name
 from ifgen.definition.types import (
     Array,
     BasicType,
     BoundedSequence,
     BoundedString,
     BoundedWString,
-    CollectionType,
     FieldType,
     NamespacedType,
     UnboundedSequence,
     UnboundedString,
     UnboundedWString,
     ValueType,
+    element_of,
 )
 from ifgen.generator_py.codec.program import NUMBERS, Number
 from ifgen.generator_py.imports import Scope
-from ifgen.generator_py.names import slot_name
 
 Reference: TypeAlias = Callable[[NamespacedType], str]
 """The name of a message class in the module."""
+
+_CLASSES: Final = {"boolean": "bool", "octet": "bytes", "char": "str", "float": "float", "double": "float"}
+_ZEROS: Final = {
+    "boolean": "False",
+    "octet": repr(bytes(1)),
+    "char": repr(chr(0)),
+    "float": "0.0",
+    "double": "0.0",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,26 +61,26 @@ class PythonField:
     shown: str
 
 
-def python_field(field: Field, scope: Scope, reference: Reference) -> PythonField:
-    """A field in Python."""
+def python_field(field: Field, attribute: str, scope: Scope, reference: Reference) -> PythonField:
+    """A field in Python; `attribute` is its public name there."""
+    text = _FieldText(field, attribute, scope, reference)
     match field.type:
         case Array(BasicType(typename), size) if NUMBERS[typename].typecode:
-            return _numeric_array(field, NUMBERS[typename], size, scope)
-        case BoundedSequence(BasicType(typename), _) | UnboundedSequence(BasicType(typename)) if NUMBERS[
+            return text.numeric_array(NUMBERS[typename], size)
+        case BoundedSequence(BasicType(typename)) | UnboundedSequence(BasicType(typename)) if NUMBERS[
             typename
         ].typecode:
-            return _numeric_sequence(field, NUMBERS[typename], scope)
+            return text.numeric_sequence(NUMBERS[typename])
         case Array(value_type, size):
-            made = f"[{_zero(value_type, scope, reference)}"
             is_message = isinstance(value_type, NamespacedType)
-            made += f" for _ in {scope('range')}({size})]" if is_message else f"] * {size}"
-            return _list(field, value_type, made, scope, reference)
-        case BoundedSequence(value_type, _) | UnboundedSequence(value_type):
-            return _list(field, value_type, "[]", scope, reference)
+            rest = f" for _ in {scope('range')}({size})]" if is_message else f"] * {size}"
+            return text.list(value_type, f"[{text.zero(value_type)}{rest}")
+        case BoundedSequence(value_type) | UnboundedSequence(value_type):
+            return text.list(value_type, "[]")
         case NamespacedType() as message_type:
-            return _message(field, reference(message_type), scope)
+            return text.message(reference(message_type))
         case value_type:
-            return _scalar(field, value_type, scope, reference)
+            return text.scalar(value_type)
 
 
 def rosidl_text(type_: FieldType) -> str:
@@ -108,7 +115,7 @@ def literal(value: Scalar, scope: Scope) -> str:
 
 def is_float32(type_: FieldType) -> bool:
     """Whether a field of this type holds a float32, or several of them."""
-    return (type_.value_type if isinstance(type_, CollectionType) else type_) == BasicType("float")
+    return element_of(type_) == BasicType("float")
 
 
 def default_value(field: Field) -> Scalar | tuple[Scalar, ...] | None:
@@ -143,177 +150,143 @@ def default_literal(field: Field, scope: Scope) -> str:
             return f"[{elements}]"
 
 
-def _element_annotation(type_: ValueType, scope: Scope, reference: Reference) -> str:
-    match type_:
-        case NamespacedType():
-            return reference(type_)
-        case BasicType("boolean"):
-            return scope("bool")
-        case BasicType("octet"):
-            return scope("bytes")
-        case BasicType("char"):
-            return scope("str")
-        case BasicType("float" | "double"):
-            return scope("float")
-        case BasicType():
-            return scope("int")
-        case _:
-            return scope("str")
+def zero_literal(type_: ValueType) -> str | None:
+    """The value of a new message's field as a literal; None for a message."""
+    if isinstance(type_, NamespacedType):
+        return None
+    return _ZEROS.get(type_.typename, "0") if isinstance(type_, BasicType) else '""'
 
 
-def _zero(type_: ValueType, scope: Scope, reference: Reference) -> str:
-    match type_:
-        case NamespacedType():
-            return f"{scope.nested('default', reference(type_))}()"
-        case BasicType("boolean"):
-            return "False"
-        case BasicType("octet"):
-            return repr(bytes(1))
-        case BasicType("char"):
-            return repr(chr(0))
-        case BasicType("float" | "double"):
-            return "0.0"
-        case BasicType():
-            return "0"
-        case _:
-            return '""'
+class _FieldText:
+    """The text of one field, by the kind of its type; `private` reaches the value whatever `name` does."""
 
+    def __init__(self, field: Field, name: str, scope: Scope, reference: Reference) -> None:
+        self._field = field
+        self._name = name
+        self._private = f"_{name}"
+        self._scope = scope
+        self._reference = reference
 
-def _scalar(field: Field, type_: ValueType, scope: Scope, reference: Reference) -> PythonField:
-    name, private = attribute_name(field), slot_name(field)
-    annotation = _element_annotation(type_, scope, reference)
-    declared = field.default_value is not None
-    default = default_literal(field, scope) if declared else _zero(type_, scope, reference)
-    other = f"{scope('copied_other')}(value, memo)"
-    return PythonField(
-        slot=name,
-        annotation=annotation,
-        parameter=annotation,
-        default=default,
-        fresh=default,
-        initial=name,
-        converted=None,
-        differs=f"self.{private} != other.{private}",
-        copied=f"value if (value := message.{private}).__class__ is {annotation} else {other}",
-        shown=f"{{self.{name}!r}}",
-    )
+    def scalar(self, type_: ValueType) -> PythonField:
+        """A basic value or a string."""
+        annotation = self._element_annotation(type_)
+        default = self._declared(self.zero(type_))
+        own_class = f"(value := message.{self._private}).__class__ is {annotation}"
+        return self._stored(
+            annotation=annotation,
+            default=default,
+            fresh=default,
+            initial=self._name,
+            copied=f"value if {own_class} else {self._scope('copied_other')}(value, memo)",
+        )
 
+    def message(self, reference: str) -> PythonField:
+        """A message."""
+        deepcopy = f"{self._scope.nested('deepcopy', reference)}(value, memo)"
+        other = f"{self._scope('copied_other')}(value, memo)"
+        own_class = f"(value := message.{self._private}).__class__ is {reference}"
+        fresh = f"{self._scope.nested('default', reference)}()"
+        return self._own_object(reference, fresh, f"{deepcopy} if {own_class} else {other}")
 
-def _message(field: Field, reference: str, scope: Scope) -> PythonField:
-    deepcopy = f"{scope.nested('deepcopy', reference)}(value, memo)"
-    other = f"{scope('copied_other')}(value, memo)"
-    own_class = f"(value := message.{slot_name(field)}).__class__ is {reference}"
-    return _own_object(
-        field,
-        scope,
-        annotation=reference,
-        fresh=f"{scope.nested('default', reference)}()",
-        copied=f"{deepcopy} if {own_class} else {other}",
-    )
+    def list(self, type_: ValueType, empty: str) -> PythonField:
+        """A list; `empty` is what a new message has where no default is declared."""
+        element = self._element_annotation(type_)
+        deepcopy = self._scope.nested("deepcopy", element) if isinstance(type_, NamespacedType) else "None"
+        copied = f"{self._scope('copied_list')}(message.{self._private}, {element}, {deepcopy}, memo)"
+        return self._own_object(f"{self._scope('list')}[{element}]", self._declared(empty), copied)
 
+    def numeric_sequence(self, number: Number) -> PythonField:
+        """An array.array."""
+        scope, code = self._scope, number.typecode
+        array, element, arrays = scope("array"), self._number_class(number), scope("arrays")
+        python = self._numbers(
+            annotation=f"{array}[{element}]",
+            parameter=f"{scope('Iterable')}[{element}] | {arrays}.Buffer",
+            new=f'{array}("{code}")',
+            from_items=f'{scope("new_array")}("{code}", {{}})',
+            from_other=f'{arrays}.array_of("{code}", {{}})',
+        )
+        python = replace(python, shown=f"{{{scope('array_repr')}(self.{self._name})}}")
+        if code in "fd":  # array.array compares floats as objects, integers as memory
+            return python
+        return replace(python, differs=f"{scope('unequal')}(self.{self._private}, other.{self._private})")
 
-def _list(field: Field, value_type: ValueType, made: str, scope: Scope, reference: Reference) -> PythonField:
-    element = _element_annotation(value_type, scope, reference)
-    deepcopy = scope.nested("deepcopy", element) if isinstance(value_type, NamespacedType) else "None"
-    return _own_object(
-        field,
-        scope,
-        annotation=f"{scope('list')}[{element}]",
-        fresh=made if field.default_value is None else default_literal(field, scope),
-        copied=f"{scope('copied_list')}(message.{slot_name(field)}, {element}, {deepcopy}, memo)",
-    )
+    def numeric_array(self, number: Number, size: int) -> PythonField:
+        """A numpy array."""
+        scope = self._scope
+        numpy, element, ndarray = scope("numpy"), self._number_class(number), scope("NDArray")
+        dtype, arrays = f"{numpy}.{number.dtype}", scope("arrays")
+        return self._numbers(
+            annotation=f"{ndarray}[{dtype}]",
+            parameter=f"{scope('Sequence')}[{element}] | {arrays}.AnyArray | {arrays}.Buffer",
+            # The dtype of zeros() is float64 unless it is given, which takes longer.
+            new=f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})",
+            from_items=f"{numpy}.array({{}}, {dtype})",
+            from_other=f"{arrays}.ndarray_of({dtype}, {{}})",
+        )
 
+    def zero(self, type_: ValueType) -> str:
+        """The value of this type in a new message."""
+        if isinstance(type_, NamespacedType):
+            return f"{self._scope.nested('default', self._reference(type_))}()"
+        return zero_literal(type_) or ""
 
-def _own_object(field: Field, scope: Scope, *, annotation: str, fresh: str, copied: str) -> PythonField:
-    """A field whose default each message makes for itself; it holds what it is given."""
-    name, private, default = attribute_name(field), slot_name(field), scope("DEFAULT")
-    return PythonField(
-        slot=name,
-        annotation=annotation,
-        parameter=annotation,
-        default=default,
-        fresh=fresh,
-        initial=f"{fresh} if {name} is {default} else {name}",
-        converted=None,
-        differs=f"self.{private} != other.{private}",
-        copied=copied,
-        shown=f"{{self.{name}!r}}",
-    )
+    def _numbers(
+        self, *, annotation: str, parameter: str, new: str, from_items: str, from_other: str
+    ) -> PythonField:
+        """A field that converts its value to its own array.
 
+        Most values are lists and the like. The test for them is here because a call takes longer than the
+        test.
+        """
+        name, private, iterables = self._name, self._private, self._scope("ITERABLES")
 
-def _numeric_sequence(field: Field, number: Number, scope: Scope) -> PythonField:
-    array, element, arrays = scope("array"), _number_annotation(number, scope), scope("arrays")
-    python = _numbers(
-        field,
-        scope,
-        annotation=f"{array}[{element}]",
-        parameter=f"{scope('Iterable')}[{element}] | {arrays}.Buffer",
-        new=f'{array}("{number.typecode}")',
-        from_items=f'{scope("new_array")}("{number.typecode}", {{}})',
-        from_other=f'{arrays}.array_of("{number.typecode}", {{}})',
-    )
-    shown = f"{{{scope('array_repr')}(self.{attribute_name(field)})}}"
-    # array.array compares floats as objects, integers as memory.
-    differs = _memory_differs(field) if number.typecode in "fd" else _integers_differ(field, scope)
-    return replace(python, shown=shown, differs=differs)
+        def converted(value: str) -> str:
+            read, taken = from_items.format(value), from_other.format(value)
+            return f"{read} if {value}.__class__ in {iterables} else {taken}"
 
+        fresh = self._declared(new)
+        copied = f"{self._scope('copied_array')}(message.{private}, memo)"
+        return replace(
+            self._own_object(annotation, fresh, copied),
+            slot=private,
+            parameter=parameter,
+            initial=f"{fresh} if {name} is {self._scope('DEFAULT')} else {converted(name)}",
+            converted=converted("value"),
+            differs=f"memoryview(self.{private}) != memoryview(other.{private})",
+        )
 
-def _numeric_array(field: Field, number: Number, size: int, scope: Scope) -> PythonField:
-    numpy, element, ndarray = scope("numpy"), _number_annotation(number, scope), scope("NDArray")
-    dtype, arrays = f"{numpy}.{number.dtype}", scope("arrays")
-    python = _numbers(
-        field,
-        scope,
-        annotation=f"{ndarray}[{dtype}]",
-        parameter=f"{scope('Sequence')}[{element}] | {arrays}.AnyArray | {arrays}.Buffer",
-        # The dtype of zeros() is float64 unless it is given, which takes longer.
-        new=f"{numpy}.zeros({size})" if number.dtype == "float64" else f"{numpy}.zeros({size}, {dtype})",
-        from_items=f"{numpy}.array({{}}, {dtype})",
-        from_other=f"{arrays}.ndarray_of({dtype}, {{}})",
-    )
-    return replace(python, differs=_memory_differs(field))
+    def _own_object(self, annotation: str, fresh: str, copied: str) -> PythonField:
+        """A field whose default each message makes for itself; it holds what it is given."""
+        default = self._scope("DEFAULT")
+        initial = f"{fresh} if {self._name} is {default} else {self._name}"
+        return self._stored(
+            annotation=annotation, default=default, fresh=fresh, initial=initial, copied=copied
+        )
 
+    def _stored(self, *, annotation: str, default: str, fresh: str, initial: str, copied: str) -> PythonField:
+        """A field that holds what it is given."""
+        return PythonField(
+            slot=self._name,
+            annotation=annotation,
+            parameter=annotation,
+            default=default,
+            fresh=fresh,
+            initial=initial,
+            converted=None,
+            differs=f"self.{self._private} != other.{self._private}",
+            copied=copied,
+            shown=f"{{self.{self._name}!r}}",
+        )
 
-def _numbers(
-    field: Field,
-    scope: Scope,
-    *,
-    annotation: str,
-    parameter: str,
-    new: str,
-    from_items: str,
-    from_other: str,
-) -> PythonField:
-    """A field that converts its value to its own array.
+    def _declared(self, otherwise: str) -> str:
+        """The declared default; if there is none, this text."""
+        return otherwise if self._field.default_value is None else default_literal(self._field, self._scope)
 
-    Most values are lists and the like. The test for them is here because a call takes longer than the test.
-    """
-    name, private, iterables = attribute_name(field), slot_name(field), scope("ITERABLES")
+    def _element_annotation(self, type_: ValueType) -> str:
+        if isinstance(type_, NamespacedType):
+            return self._reference(type_)
+        return self._scope(_CLASSES.get(type_.typename, "int") if isinstance(type_, BasicType) else "str")
 
-    def converted(value: str) -> str:
-        read, taken = from_items.format(value), from_other.format(value)
-        return f"{read} if {value}.__class__ in {iterables} else {taken}"
-
-    fresh = new if field.default_value is None else default_literal(field, scope)
-    copied = f"{scope('copied_array')}(message.{private}, memo)"
-    return replace(
-        _own_object(field, scope, annotation=annotation, fresh=fresh, copied=copied),
-        slot=private,
-        parameter=parameter,
-        initial=f"{fresh} if {name} is {scope('DEFAULT')} else {converted(name)}",
-        converted=converted("value"),
-    )
-
-
-def _memory_differs(field: Field) -> str:
-    private = slot_name(field)
-    return f"memoryview(self.{private}) != memoryview(other.{private})"
-
-
-def _integers_differ(field: Field, scope: Scope) -> str:
-    private = slot_name(field)
-    return f"{scope('unequal')}(self.{private}, other.{private})"
-
-
-def _number_annotation(number: Number, scope: Scope) -> str:
-    return scope("float") if number.typecode in "fd" else scope("int")
+    def _number_class(self, number: Number) -> str:
+        return self._scope("float" if number.typecode in "fd" else "int")

@@ -16,8 +16,8 @@ from ifgen.generator_py.messages.context import (
     PackageModule,
     ServiceClass,
 )
-from ifgen.generator_py.messages.docstrings import docstring, source_literal
 from ifgen.generator_py.names import module_name
+from ifgen.generator_py.text import docstring, source_literal
 from ifgen.reading.packages import IDL
 
 _KINDS = {"msg": "Messages", "srv": "Services", "action": "Actions"}

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ifgen.generator_py.messages.docstrings import docstring
 from ifgen.generator_py.nodes.context import NodeModule
 from ifgen.generator_py.nodes.endpoints import NodeTexts
 from ifgen.generator_py.nodes.imports import Imports
 from ifgen.generator_py.nodes.parameters import declared
-from ifgen.generator_py.nodes.text import are_long, quoted
+from ifgen.generator_py.text import are_long, docstring, quoted
 from ifgen.nodl.model import NodeDescription
 
 

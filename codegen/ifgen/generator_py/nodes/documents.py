@@ -52,10 +52,10 @@ def config_lines(node: NodeDescription) -> Iterator[str]:
             yield f"    # {parameter.name}: must be given"
         elif not _is_held_by_files(parameter):
             kind = "bytes" if parameter.type.base == "byte" else "empty arrays"
-            value = _value(parameter.default)
+            value = yaml_value(parameter.default)
             yield f"    # {parameter.name}: {value}; ROS reads no {kind} from a parameter file"
         else:
-            yield f"    {_key(parameter.name)}: {_value(parameter.default)}"
+            yield f"    {_key(parameter.name)}: {yaml_value(parameter.default)}"
 
 
 def _is_held_by_files(parameter: Parameter) -> bool:
@@ -67,7 +67,7 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
     yield f"  {_key(parameter.name)}:"
     yield f"    type: {spelled(parameter.type)}"
     if parameter.default is not None:
-        yield f"    default_value: {_value(parameter.default)}"
+        yield f"    default_value: {yaml_value(parameter.default)}"
     if parameter.description:
         yield f"    description: {quoted(parameter.description)}"
     if parameter.read_only:
@@ -87,7 +87,7 @@ def _key(name: str) -> str:
 
 
 def _arguments(validator: Validator) -> str:
-    listed = _flow(map(_value, validator.arguments))
+    listed = _flow(map(yaml_value, validator.arguments))
     return f"[{listed}]" if validator.name in {"one_of", "subset_of"} else listed
 
 
@@ -114,7 +114,8 @@ def _qos(qos: QosProfile) -> Sequence[tuple[str, object]]:
     return [(name, value) for name, value in policies if value]
 
 
-def _value(value: ParameterValue) -> str:
+def yaml_value(value: ParameterValue) -> str:
+    """A value of a parameter in YAML."""
     match value:
         case bool():
             return "true" if value else "false"
@@ -125,7 +126,7 @@ def _value(value: ParameterValue) -> str:
         case str():
             return quoted(value)
         case bytes() | tuple():
-            return _flow(map(_value, value))
+            return _flow(map(yaml_value, value))
 
 
 def _flow(items: Iterable[str]) -> str:

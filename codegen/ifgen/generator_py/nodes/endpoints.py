@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ifgen.generator_py.messages.docstrings import docstring
 from ifgen.generator_py.nodes.context import (
     ActionClientText,
     ActionServerText,
@@ -16,7 +15,7 @@ from ifgen.generator_py.nodes.context import (
 )
 from ifgen.generator_py.nodes.imports import Imports, references
 from ifgen.generator_py.nodes.members import Clockwork, members_of
-from ifgen.generator_py.nodes.text import literal, qos_profile, quoted, signature
+from ifgen.generator_py.text import docstring, literal, qos_profile, quoted, signature
 from ifgen.nodl.model import Endpoint, NodeDescription
 
 _CLOCKS = {"ros": "", "steady": "STEADY_TIME", "system": "SYSTEM_TIME"}

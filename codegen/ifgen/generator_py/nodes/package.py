@@ -11,12 +11,11 @@ from types import MappingProxyType
 from ifgen.definition.interfaces import InterfacePackage, Message
 from ifgen.definition.references import references
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.messages.docstrings import docstring
 from ifgen.generator_py.nodes.classes import base_module, user_module
 from ifgen.generator_py.nodes.context import ChecksModule, NodeFiles, NodePackageFiles
 from ifgen.generator_py.nodes.documents import config_lines, description_lines
 from ifgen.generator_py.nodes.parameters import annotation, declared, parameters_module
-from ifgen.generator_py.nodes.text import literal, quoted
+from ifgen.generator_py.text import docstring, literal, quoted
 from ifgen.nodl.model import NodeDescription, NodePackage, PackageMetadata, Parameter, Validator
 from ifgen.reading.package_xml import Dependency
 

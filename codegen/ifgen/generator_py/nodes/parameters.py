@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
-from ifgen.generator_py.messages.docstrings import docstring
 from ifgen.generator_py.nodes.context import (
     ParameterAttribute,
     ParameterClass,
@@ -14,7 +13,7 @@ from ifgen.generator_py.nodes.context import (
     ParameterText,
 )
 from ifgen.generator_py.nodes.imports import Imports
-from ifgen.generator_py.nodes.text import are_long, call, literal, quoted
+from ifgen.generator_py.text import are_long, call, docstring, literal, quoted
 from ifgen.nodl.model import NodeDescription, Parameter, ParameterType, Validator
 
 KINDS: Final = {"bool": "BOOL", "int": "INTEGER", "double": "DOUBLE", "string": "STRING", "byte": "BYTE"}

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from ifgen.generator_py.adapters.context import AdapterModule, AdapterPackage, AdapterTests, FrozenModule
+from ifgen.generator_py.adapters import AdapterModule, AdapterPackage, AdapterTests, FrozenModule
 from ifgen.generator_py.messages.context import FolderModule, InterfaceModule, PackageModule, ProjectFile
 from ifgen.generator_py.nodes.context import (
     ChecksModule,

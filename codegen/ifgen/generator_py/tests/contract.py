@@ -10,7 +10,6 @@ from ifgen.definition.interfaces import Action, Registry, Service
 from ifgen.generator_py.imports import IN_NODES, Names
 from ifgen.generator_py.nodes.members import Clockwork, NodeMembers, members_of
 from ifgen.generator_py.nodes.parameters import KINDS, declared
-from ifgen.generator_py.nodes.text import literal, qos_arguments, quoted
 from ifgen.generator_py.tests.context import (
     ActionText,
     AskedText,
@@ -24,6 +23,7 @@ from ifgen.generator_py.tests.context import (
 )
 from ifgen.generator_py.tests.parameter_values import accepted, refused
 from ifgen.generator_py.tests.strategies import Strategies
+from ifgen.generator_py.text import literal, qos_arguments, quoted
 from ifgen.nodl.model import Endpoint, NodeDescription, Parameter, ParameterValue, Timer
 from ifgen.nodl.names import expanded
 

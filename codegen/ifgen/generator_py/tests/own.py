@@ -6,14 +6,14 @@ from array import array
 from dataclasses import replace
 
 from ifgen.definition.interfaces import Action, Interface, Message, Registry, Service
-from ifgen.definition.types import CollectionType, NamespacedType
+from ifgen.definition.types import NamespacedType, element_of
 from ifgen.generator_py.imports import IN_NODES, Names
 from ifgen.generator_py.messages.fields import default_value, is_float32
 from ifgen.generator_py.nodes.imports import references
 from ifgen.generator_py.nodes.members import Clockwork, members_of
-from ifgen.generator_py.nodes.text import are_long, quoted
 from ifgen.generator_py.tests.context import OwnTests
 from ifgen.generator_py.tests.contract import given_at_start, is_clock, period_of
+from ifgen.generator_py.text import are_long, quoted
 from ifgen.nodl.model import Endpoint, NodeDescription
 
 
@@ -118,7 +118,7 @@ def _first_answer(interface: Interface) -> tuple[Message, str]:
 def _survives(message: Message, registry: Registry) -> bool:
     """True if a new message is received unchanged; one with a float32 of 0.1 by default is not."""
     for field in message.fields:
-        element = field.type.value_type if isinstance(field.type, CollectionType) else field.type
+        element = element_of(field.type)
         value = default_value(field)
         if isinstance(element, NamespacedType):
             if not _survives(registry.message(element.type_name), registry):

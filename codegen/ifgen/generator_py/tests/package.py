@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ifgen.definition.interfaces import Action, Field, Interface, InterfacePackage, Message, Registry, Service
+from ifgen.definition.literals import INTEGER_RANGES
 from ifgen.definition.names import attribute_name
 from ifgen.definition.types import (
     Array,
@@ -17,11 +18,13 @@ from ifgen.definition.types import (
     NamespacedType,
     UnboundedSequence,
     ValueType,
+    element_of,
 )
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.messages.fields import default_value, is_float32, rosidl_text
+from ifgen.generator_py.messages.fields import default_value, is_float32, rosidl_text, zero_literal
 from ifgen.generator_py.tests.context import InterfaceTests, MessageCase, NodeTests, OwnTests, TestSupport
-from ifgen.generator_py.tests.strategies import INTEGERS, Strategies, enclosed
+from ifgen.generator_py.tests.strategies import Strategies, enclosed
+from ifgen.generator_py.text import plain_literal
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage
@@ -90,7 +93,7 @@ def _case(message: Message, strategies: Strategies) -> MessageCase:
     fields = [(attribute_name(field), field) for field in message.fields]
     quoted = [(field.name, f'"{rosidl_text(field.type)}"') for field in message.fields]
     defaults = [(name, _default(field)) for name, field in fields if field.default_value is not None]
-    constants = [(constant.name, _literal(constant.value)) for constant in message.constants]
+    constants = [(constant.name, plain_literal(constant.value)) for constant in message.constants]
     refused = [(name, _list(_refused(field.type, strategies))) for name, field in fields]
     nan = [(name, value) for name, field in fields if (value := _nan(field.type))]
     arguments = {
@@ -116,15 +119,9 @@ def _default(field: Field) -> str:
     """The default as a field holds it; in arrays of float32 all numbers are rounded."""
     value = default_value(field)
     if not isinstance(value, tuple):
-        return _literal(value)
-    elements = _list(map(_literal, value))
+        return plain_literal(value)
+    elements = _list(map(plain_literal, value))
     return f'array("f", {elements})' if is_float32(field.type) else elements
-
-
-def _literal(value: object) -> str:
-    if isinstance(value, float) and value - value != 0.0:  # inf or nan
-        return f'float("{value}")'
-    return repr(value)
 
 
 def _list(elements: Iterable[str]) -> str:
@@ -153,7 +150,7 @@ def _refused(type_: FieldType, strategies: Strategies) -> tuple[str, ...]:
         case BasicType("double"):
             return ('"0.0"',)
         case BasicType(name):
-            low, high = INTEGERS[name]
+            low, high = INTEGER_RANGES[name]
             return (str(low - 1), str(high + 1), '"0"')
         case BoundedString(bound) | BoundedWString(bound) if bound <= _LONGEST_REFUSED:
             return ("0", f'"x" * {bound + 1}')
@@ -190,32 +187,24 @@ def _repeated(value: str, size: int) -> str:
 
 def _valid(type_: ValueType, strategies: Strategies) -> str:
     match type_:
-        case NamespacedType():
-            return f"{strategies.message_class(type_)}()"
-        case BasicType("boolean"):
-            return "False"
         case BasicType("octet"):
             return 'b"a"'
         case BasicType("char"):
             return '"a"'
-        case BasicType("float" | "double"):
-            return "0.0"
-        case BasicType():
-            return "0"
+        case NamespacedType():
+            return f"{strategies.message_class(type_)}()"
         case _:
-            return '""'
+            return zero_literal(type_) or ""
 
 
 def _nan(type_: FieldType) -> str:
     """A value of NaN, if a field of this type can have one."""
+    if element_of(type_) not in {BasicType("float"), BasicType("double")}:
+        return ""
     match type_:
-        case BasicType("float" | "double"):
-            return "NAN"
-        case Array(BasicType("float" | "double"), size):
+        case Array(size=size):
             return _repeated("NAN", size)
-        case BoundedSequence(BasicType("float" | "double")) | UnboundedSequence(
-            BasicType("float" | "double")
-        ):
+        case BoundedSequence() | UnboundedSequence():
             return "[NAN]"
         case _:
-            return ""
+            return "NAN"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ifgen.definition.interfaces import Constant, Message, Registry
+from ifgen.definition.literals import INTEGER_RANGES
 from ifgen.definition.names import attribute_name
 from ifgen.definition.types import (
     Array,
@@ -23,19 +24,16 @@ from ifgen.generator_py.imports import LINE_LENGTH, natural
 from ifgen.generator_py.messages import enums
 from ifgen.generator_py.names import interface_name
 
-INTEGERS = {
-    f"{sign}int{bits}": (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
-    for sign in ("", "u")
-    for bits in (8, 16, 32, 64)
-}
-"""The smallest and the largest value of the integer types."""
-
 # Values are drawn from these, by IDL type. NaN is left out, because it equals nothing; it has its own test.
 _VALUES = {
     "boolean": ("BOOLEANS", "st.booleans()"),
     "octet": ("OCTETS", "st.binary(min_size=1, max_size=1)"),
     "char": ("ASCII", 'st.characters(codec="ascii")'),
-    **{name: (f"{name.upper()}S", f"st.integers({low}, {high})") for name, (low, high) in INTEGERS.items()},
+    **{
+        name: (f"{name.upper()}S", f"st.integers({low}, {high})")
+        for name, (low, high) in INTEGER_RANGES.items()
+        if name != "octet"
+    },
     "float": ("FLOAT32S", "st.floats(allow_nan=False, width=32)"),
     "double": ("FLOAT64S", "st.floats(allow_nan=False)"),
 }

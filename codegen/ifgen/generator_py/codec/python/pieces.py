@@ -51,7 +51,7 @@ def padding_piece(alignment: int) -> Piece:
 
 def after_run(run: Sequence[Piece], start: Alignment) -> Alignment:
     """The knowledge about the position after a run."""
-    return start.after((piece.alignment, piece.size) for piece in run)
+    return start.after([(piece.alignment, piece.size) for piece in run])
 
 
 def places_of(run: Sequence[Piece], start: int) -> list[int]:

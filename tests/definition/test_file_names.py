@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from ifgen import resources
-from ifgen.definition.package_names import NEEDED, problem
+from ifgen.definition.file_names import NEEDED, problem
 
 ROOT = Path(__file__).parents[2]
 
@@ -33,7 +33,7 @@ def test_all_that_is_imported_is_needed() -> None:
     folders = (resources.bundled_generated(), resources.underlay(), ROOT / "codegen/ifgen_runtime")
     private = {name for name in sys.stdlib_module_names if name.startswith("_")}
     needed = set[str]().union(*map(imported, folders)) - packages - private
-    assert needed <= NEEDED, "add what is new to package_names.NEEDED"
+    assert needed <= NEEDED, "add what is new to file_names.NEEDED"
 
 
 PROGRAM = """
@@ -57,7 +57,7 @@ def test_all_of_pythons_own_that_is_imported_in_turn_is_needed() -> None:
     loaded = subprocess.check_output([sys.executable, "-c", PROGRAM], text=True, timeout=60).split()
     own = {name for name in loaded if name in sys.stdlib_module_names and not name.startswith("_")}
     assert len(own) > 50
-    assert own <= NEEDED, "add what is new to package_names.NEEDED"
+    assert own <= NEEDED, "add what is new to file_names.NEEDED"
 
 
 def test_what_can_be_a_package() -> None:

@@ -1,9 +1,9 @@
-"""From interfaces to what templates of the user's own see of them."""
+"""From interfaces and nodes to their views, which templates of the user's own see."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from typing import assert_never
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Final, assert_never
 
 from ifgen.definition.interfaces import (
     Action,
@@ -13,7 +13,6 @@ from ifgen.definition.interfaces import (
     Interface,
     Message,
     Registry,
-    Scalar,
     Service,
 )
 from ifgen.definition.literals import INTEGER_RANGES
@@ -30,29 +29,48 @@ from ifgen.definition.types import (
     CollectionType,
     FieldType,
     NamespacedType,
+    UnboundedSequence,
     ValueType,
+    element_of,
 )
+from ifgen.generator_py.messages.fields import zero_literal
 from ifgen.generator_py.names import interface_name
+from ifgen.generator_py.nodes.documents import yaml_value
 from ifgen.generator_py.outputs.view import (
     AnnotationView,
     Base,
     ConstantView,
+    EndpointView,
     FieldView,
     InterfaceView,
     Kind,
     MessageName,
     MessageView,
+    NodeView,
+    ParameterView,
+    QosView,
     Role,
+    TimerView,
     TypeView,
 )
+from ifgen.generator_py.text import plain_literal
+from ifgen.nodl.model import (
+    Endpoint,
+    NodeDescription,
+    Parameter,
+    QosProfile,
+    Timer,
+    Validator,
+)
+from ifgen.nodl.names import expanded
+from ifgen.nodl.values import spelled as spelled_type
 
-_ZERO = {
-    "bool": "False",
-    "int": "0",
-    "float": "0.0",
-    "byte": repr(bytes(1)),
-    "char": repr(chr(0)),
-    "string": '""',
+_BASES: Final[Mapping[str, Base]] = {
+    "boolean": "bool",
+    "octet": "byte",
+    "char": "char",
+    "float": "float",
+    "double": "float",
 }
 
 
@@ -108,7 +126,7 @@ def _constant(constant: Constant) -> ConstantView:
         name=constant.name,
         type=_type(constant.type),
         value=spelled_value(constant.value),
-        python_value=_literal(constant.value),
+        python_value=plain_literal(constant.value),
         documentation=constant.documentation,
         unit=constant.unit,
         annotations=_annotations(constant.annotations),
@@ -116,39 +134,33 @@ def _constant(constant: Constant) -> ConstantView:
 
 
 def _field(field: Field) -> FieldView:
-    type_ = _type(field.type)
     return FieldView(
         name=field.name,
         attribute=attribute_name(field),
-        type=type_,
+        type=_type(field.type),
         default=None if field.default_value is None else spelled_value(field.default_value),
-        python_default=_python_default(field.default_value, type_),
+        python_default=_python_default(field),
         documentation=field.documentation,
         unit=field.unit,
         annotations=_annotations(field.annotations),
     )
 
 
-def _python_default(value: Scalar | tuple[Scalar, ...] | None, type_: TypeView) -> str | None:
+def _python_default(field: Field) -> str | None:
+    value = field.default_value
     if isinstance(value, tuple):
-        return f"[{', '.join(map(_literal, value))}]"
+        return f"[{', '.join(map(plain_literal, value))}]"
     if value is not None:
-        return _literal(value)
-    if type_.many and type_.size is None:
+        return plain_literal(value)
+    if isinstance(field.type, BoundedSequence | UnboundedSequence):
         return "[]"
-    zero = _ZERO.get(type_.base)
-    return f"[{zero}] * {type_.size}" if type_.many and zero else zero
-
-
-def _literal(value: Scalar) -> str:
-    if isinstance(value, float) and value - value != 0.0:  # inf or nan
-        return f'float("{value}")'
-    return repr(value)
+    zero = zero_literal(element_of(field.type))
+    return f"[{zero}] * {field.type.size}" if isinstance(field.type, Array) and zero else zero
 
 
 def _type(type_: FieldType) -> TypeView:
     many = isinstance(type_, CollectionType)
-    element = type_.value_type if isinstance(type_, CollectionType) else type_
+    element = element_of(type_)
     base = _base(element)
     low = high = None
     if base == "int" and isinstance(element, BasicType):
@@ -168,21 +180,9 @@ def _type(type_: FieldType) -> TypeView:
 
 
 def _base(element: ValueType) -> Base:
-    match element:
-        case NamespacedType():
-            return "message"
-        case BasicType("boolean"):
-            return "bool"
-        case BasicType("octet"):
-            return "byte"
-        case BasicType("char"):
-            return "char"
-        case BasicType("float" | "double"):
-            return "float"
-        case BasicType():
-            return "int"
-        case _:
-            return "string"
+    if isinstance(element, NamespacedType):
+        return "message"
+    return _BASES.get(element.typename, "int") if isinstance(element, BasicType) else "string"
 
 
 def _uses(parts: Iterable[Message]) -> Iterator[MessageName]:
@@ -204,4 +204,83 @@ def _message_name(type_: NamespacedType) -> MessageName:
         interface=interface_name(type_),
         snake_interface=snake_case(interface_name(type_)),
         module=f"{type_.package}.{type_.folder}",
+    )
+
+
+def node_view(node: NodeDescription) -> NodeView:
+    """The view of a node for templates."""
+
+    def views(endpoints: tuple[Endpoint, ...]) -> tuple[EndpointView, ...]:
+        return tuple(_endpoint(endpoint, node.name) for endpoint in endpoints)
+
+    return NodeView(
+        package=node.package,
+        name=node.name,
+        node_class=node.node_class,
+        style=node.style,
+        documentation=node.description,
+        parameters=tuple(map(_parameter, node.parameters)),
+        endpoints=views(node.endpoints),
+        publishers=views(node.publishers),
+        subscriptions=views(node.subscriptions),
+        service_servers=views(node.service_servers),
+        service_clients=views(node.service_clients),
+        action_servers=views(node.action_servers),
+        action_clients=views(node.action_clients),
+        timers=tuple(map(_timer, node.timers)),
+    )
+
+
+def _endpoint(endpoint: Endpoint, node: str) -> EndpointView:
+    return EndpointView(
+        category=endpoint.category.value,
+        name=endpoint.name,
+        full_name=expanded(endpoint.name, node),
+        type_name=endpoint.type_name,
+        documentation=endpoint.description,
+        qos=None if endpoint.qos is None else _qos(endpoint.qos),
+    )
+
+
+def _qos(qos: QosProfile) -> QosView:
+    return QosView(
+        history=qos.history,
+        depth=qos.depth or None,
+        reliability=qos.reliability,
+        durability=qos.durability,
+        deadline=_seconds(qos.deadline_ns),
+        lifespan=_seconds(qos.lifespan_ns),
+        liveliness=qos.liveliness,
+        liveliness_lease_duration=_seconds(qos.liveliness_lease_duration_ns),
+    )
+
+
+def _seconds(nanoseconds: int) -> float | None:
+    return nanoseconds / 1e9 if nanoseconds else None
+
+
+def _parameter(parameter: Parameter) -> ParameterView:
+    constraints = [_constraint(validator) for validator in parameter.validators]
+    if parameter.additional_constraints:
+        constraints.append(parameter.additional_constraints)
+    return ParameterView(
+        name=parameter.name,
+        type=spelled_type(parameter.type),
+        default=None if parameter.default is None else yaml_value(parameter.default),
+        documentation=parameter.description,
+        read_only=parameter.read_only,
+        constraints=tuple(constraints),
+    )
+
+
+def _constraint(validator: Validator) -> str:
+    return f"{validator.name}<>: {yaml_value(validator.arguments)}"
+
+
+def _timer(timer: Timer) -> TimerView:
+    return TimerView(
+        name=timer.name,
+        period=timer.period,
+        period_parameter=timer.period_parameter,
+        publishes=timer.publishes,
     )

@@ -1,21 +1,33 @@
-"""The variables of templates for an interface or a node, as values, as JSON, and as a JSON schema."""
+"""The catalogue of templates, and their variables for an interface or a node, for `ifgen templates`.
+
+The catalogue says what a template makes, its variables and blocks, and what it is part of. Variables are
+shown as values, as JSON, and as a JSON schema.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
+from pathlib import Path
 from typing import Any, TypeAlias, cast
 
+import jinja2
+import jinja2.meta
+from jinja2 import nodes
+
+from ifgen import resources
+from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Interface, InterfacePackage, Registry
 from ifgen.generator_py.messages import package as message_package
 from ifgen.generator_py.nodes import package as node_package
-from ifgen.generator_py.outputs.interfaces import interface_view
-from ifgen.generator_py.outputs.nodes import node_view
+from ifgen.generator_py.outputs.build import interface_view, node_view
 from ifgen.generator_py.outputs.view import PackageView
-from ifgen.generator_py.templates.listing import type_name
+from ifgen.generator_py.templates.checking import given
+from ifgen.generator_py.templates.exports import files
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
 from ifgen.generator_py.tests import package as test_package
 from ifgen.nodl.model import NodeDescription, NodePackage
+from ifgen.reading.storage import read_limited
 
 Contexts: TypeAlias = Mapping[str, Mapping[str, object]]
 """The variables of templates, by the template or by the kind of output that is given them."""
@@ -135,3 +147,68 @@ def _plain(value: object) -> Any:
     if isinstance(value, Mapping):
         return {str(k): _plain(element) for k, element in cast("Mapping[object, object]", value).items()}
     return value
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """A template. `makes` is empty for one that is a part of others, which `part_of` names.
+
+    `given` are its variables with their types, `blocks` what can be replaced singly, and `yours` is the file
+    of the user's that stands in its place, if there is one.
+    """
+
+    name: str
+    makes: str
+    given: Mapping[str, str]
+    part_of: tuple[str, ...]
+    blocks: tuple[str, ...]
+    yours: Path | None
+
+
+def listed(custom: Customization) -> tuple[Listed, ...]:
+    """All our templates, then the user's templates for outputs. Broken ones have no blocks."""
+    own = {name: path for folder in custom.folders for name, path in files(folder).items()}
+    trees = {name: _parsed(path) for name, path in files(resources.templates()).items()}
+    variables = given(jinja2.Environment())
+    found = [_ours(name, trees, variables.get(name, {}), own.get(name)) for name in trees]
+    for output in custom.outputs:
+        tree = _parsed(own[output.template]) if output.template in own else None
+        makes, types = f"{output.path}, output '{output.name}'", _shown(OUTPUT_VARIABLES[output.per])
+        found.append(Listed(output.template, makes, types, (), _blocks(tree), own.get(output.template)))
+    return tuple(found)
+
+
+def type_name(type_: object) -> str:
+    """A type as a reader wants to see it: `InterfaceModule`, `tuple[PackageView, ...]`."""
+    return (
+        type_.__name__
+        if isinstance(type_, type)
+        else str(type_).replace("ifgen.generator_py.outputs.view.", "")
+    )
+
+
+def _ours(
+    name: str, trees: Mapping[str, nodes.Template | None], variables: Mapping[str, str], yours: Path | None
+) -> Listed:
+    entry = TEMPLATES.get(name)
+    users = () if entry else tuple(user for user, tree in trees.items() if name in _referenced(tree))
+    return Listed(name, entry.makes if entry else "", variables, users, _blocks(trees[name]), yours)
+
+
+def _shown(variables: Mapping[str, object]) -> dict[str, str]:
+    return {name: type_name(type_) for name, type_ in variables.items()}
+
+
+def _parsed(path: Path) -> nodes.Template | None:
+    try:
+        return jinja2.Environment().parse(read_limited(path).decode("utf-8"))
+    except (jinja2.TemplateSyntaxError, OSError, RecursionError, UnicodeDecodeError):
+        return None
+
+
+def _referenced(tree: nodes.Template | None) -> set[str | None]:
+    return set(jinja2.meta.find_referenced_templates(tree)) if tree else set()
+
+
+def _blocks(tree: nodes.Template | None) -> tuple[str, ...]:
+    return tuple(str(block.name) for block in tree.find_all(nodes.Block)) if tree else ()

@@ -1,14 +1,72 @@
-"""Python text as `ruff format` leaves it: literals, calls, signatures and QoS profiles."""
+"""Python text as `ruff format` leaves it: docstrings, literals, calls, signatures and QoS profiles."""
 
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Callable, Iterable, Iterator
+from typing import TYPE_CHECKING
 
 from ifgen.generator_py.imports import LINE_LENGTH
-from ifgen.nodl.model import ParameterValue, QosProfile
+
+if TYPE_CHECKING:
+    from ifgen.nodl.model import ParameterValue, QosProfile
+
+_WIDTH = 100
+
+
+def docstring(text: str, *, indent: int) -> str:
+    """A docstring literal whose first line is already indented; the other lines are indented here."""
+    lines: list[str] = []
+    for line in text.expandtabs(4).strip().splitlines():
+        if len(line) > _WIDTH:
+            lines += textwrap.wrap(line.rstrip(), _WIDTH, break_long_words=False, break_on_hyphens=False)
+        else:
+            lines.append(line.rstrip())
+    lines = [_escaped(line) for line in lines]
+    if len(lines) < 2:
+        return f'"""{"".join(lines)}"""'
+    margin = " " * indent
+    return "\n".join(
+        [f'"""{lines[0]}', *(margin + line if line else "" for line in lines[1:]), f'{margin}"""']
+    )
+
+
+def _escaped(line: str) -> str:
+    """A line as it has to be written between triple quotes."""
+    line = line.replace("\\", "\\\\")
+    if '"""' in line:
+        line = line.replace('"', '\\"')
+    elif line.endswith('"'):  # the closing quotes may come next
+        line = line[:-1] + '\\"'
+    return line if line.isprintable() else "".join(map(_escaped_character, line))
+
+
+def _escaped_character(character: str) -> str:
+    if character.isprintable():
+        return character
+    code = ord(character)
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def source_literal(text: str) -> str:
+    """A definition as a string literal that can be read: one line of it a line."""
+    return '"""\\\n' + "\n".join(map(_source_line, text.split("\n"))) + '"""'
+
+
+def _source_line(line: str) -> str:
+    stripped = line.rstrip(" ")
+    return _escaped(stripped) + "\\x20" * (len(line) - len(stripped))
+
 
 _LONG = 36
+
+
+def plain_literal(value: object) -> str:
+    """A value of an interface as a Python literal, as `repr` shows it."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return f'float("{value}")'
+    return repr(value)
 
 
 def literal(value: ParameterValue) -> str:

@@ -1,1 +1,0 @@
-"""Modules that convert messages of another version of a type (docs/adapters.md)."""
