@@ -104,12 +104,12 @@ def inspect_templates(
         return found
     try:
         packages = find_packages(paths)
-        request = Request(tuple(paths), packages, SearchPath(packages, include), output, custom=custom)
+        request = Request(tuple(paths), packages, SearchPath(packages, include), output, {}, custom=custom)
         resolved = resolve(request)
     except InputError:
         return found
     try:
-        deque(render(plan(resolved, custom, UpToDate()), custom), maxlen=0)
+        deque(render(plan(request, resolved, UpToDate()), custom), maxlen=0)
     except InputError as error:
         found += error.diagnostics
     return found
