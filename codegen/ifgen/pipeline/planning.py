@@ -10,7 +10,7 @@ from ifgen.config.customization import Customization, Distributions
 from ifgen.definition.interfaces import InterfacePackage
 from ifgen.diagnostics import Diagnostic, InputError, Label
 from ifgen.generator_py.artifact import Artifact, OutputFile
-from ifgen.generator_py.messages.facts import Facts
+from ifgen.generator_py.messages.classes import Facts
 from ifgen.generator_py.messages.package import module_path, plan_interface, plan_shared
 from ifgen.generator_py.templates.render import Templates
 from ifgen.generator_py.tests.package import plan_interface_tests, plan_node_tests, plan_users_tests

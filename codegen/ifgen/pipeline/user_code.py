@@ -13,8 +13,8 @@ from ifgen.definition.explain import did_you_mean
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, shorten
 from ifgen.generator_py.nodes.classes import user_module
 from ifgen.generator_py.nodes.context import NodeModule
-from ifgen.generator_py.nodes.custom_checks import checks_modules
 from ifgen.generator_py.nodes.members import RESERVED
+from ifgen.generator_py.nodes.package import checks_modules
 from ifgen.generator_py.nodes.parameters import declared
 from ifgen.nodl.model import NodeDescription, NodePackage
 from ifgen.reading.python_text import parse, span_of

@@ -7,6 +7,7 @@ from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
+from ifgen import signals
 from ifgen.definition.interfaces import Interface, Registry
 from ifgen.diagnostics import Diagnostic
 from ifgen.pipeline import previous_output
@@ -16,7 +17,7 @@ from ifgen.pipeline.values import BuildResult, Request, ResolvedInput
 from ifgen.reading import manifest
 from ifgen.reading.manifest import Manifest
 from ifgen.reading.storage import MAX_GENERATED, read_limited
-from ifgen.writing import interruption, write
+from ifgen.writing import write
 
 Done = TypeVar("Done")
 
@@ -49,7 +50,7 @@ def unless_up_to_date(
     state = _State(request, read_record(request.output), Fingerprints(request))
     up_to_date = state.up_to_date()
     result = up_to_date.result or build(request, up_to_date)
-    with prepare(request, result) as finish, interruption.held("all files had been written"):
+    with prepare(request, result) as finish, signals.delay_interrupt("all files had been written"):
         done = finish()
         if result.resolved is not None:
             save_record(state.updated(result.resolved, result.diagnostics), request.output)
