@@ -84,10 +84,10 @@ class _Settings:
 def _settings(paths: Sequence[Path], output: Path | None) -> _Settings:
     """The current settings, else new ones. Raises UsageError if options contradict current settings."""
     from ifgen.cli import project_files
-    from ifgen.config import model
+    from ifgen.config.model import read_config
 
     text = _text(_PYPROJECT)
-    known = None if text is None else model.read(_PYPROJECT.absolute())
+    known = None if text is None else read_config(_PYPROJECT.absolute(), text.encode())
     if known is not None:
         if paths or output is not None:
             message = f"{_PYPROJECT} has [tool.ifgen] already"

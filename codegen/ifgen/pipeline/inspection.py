@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization
-from ifgen.config.ros_distro import judged
+from ifgen.config.suppressions import judged
 from ifgen.diagnostics import Diagnostic, InputError, any_errors
 from ifgen.reading.packages import find_packages
 from ifgen.reading.search_path import SearchPath

@@ -11,8 +11,8 @@ from itertools import chain
 from pathlib import Path
 
 from ifgen import resources
-from ifgen.config import ros_distro
 from ifgen.config.customization import Customization
+from ifgen.config.suppressions import is_old
 from ifgen.definition import dependencies, derive
 from ifgen.definition.interfaces import Action, Interface, Message, Registry
 from ifgen.definition.references import references
@@ -216,10 +216,16 @@ def _of_source(source: Source) -> bytes:
 
 def _of_customization(custom: Customization) -> bytes:
     """The digest of all the user's additions, empty if there are none."""
-    is_old = ros_distro.is_old(custom.ros_distro)
-    if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_old:
+    is_for_old = is_old(custom.ros_distro)
+    if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_for_old:
         return b""
-    values = (custom.outputs, custom.tests, custom.distributions, sorted(custom.requirements.items()), is_old)
+    values = (
+        custom.outputs,
+        custom.tests,
+        custom.distributions,
+        sorted(custom.requirements.items()),
+        is_for_old,
+    )
     hasher = hashlib.sha256(repr(values).encode(errors="surrogateescape"))
     paths = [path for folder in custom.folders for _, path in _files_below(folder)]
     for path in (*paths, *([custom.filters] if custom.filters else ())):
