@@ -60,6 +60,9 @@ def test_paths_are_relative_to_the_file_and_options_win(
     assert given == Settings(
         paths=(Path("p"),),
         output=Path("o"),
+        include=(),
+        exclude=(),
+        with_deps=False,
         custom=custom,
         policy=Policy(base=tmp_path),
         config=found.config,
@@ -69,7 +72,16 @@ def test_paths_are_relative_to_the_file_and_options_win(
 
 def test_no_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert settle() == Settings()
+    assert settle() == Settings(
+        paths=(),
+        output=Path("generated"),
+        include=(),
+        exclude=(),
+        with_deps=False,
+        custom=Customization(),
+        policy=Policy(),
+        config=Config(),
+    )
     with pytest.raises(UsageError, match=r"no pyproject.toml with \[tool.ifgen\]"):
         settle().with_paths()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from pathlib import Path
 from typing import Any, Final, NamedTuple, cast
 
@@ -13,7 +13,6 @@ _KIND: Final = "kind"
 _DEFAULT: Final = "default"
 
 
-@dataclass(frozen=True, slots=True)
 class Kind:
     """A kind of value; `expected` says what to write.
 
@@ -21,10 +20,14 @@ class Kind:
     right one; paths are relative to a folder. In a table of tables, those have the keys of the class `inner`.
     """
 
-    expected: str
-    wrong: Callable[[Any], Sequence[object]]
-    read: Callable[[Any, Path], Any] = lambda value, _: value
-    inner: type | None = None
+    def __init__(
+        self,
+        expected: str,
+        wrong: Callable[[Any], Sequence[object]],
+        read: Callable[[Any, Path], Any] = lambda value, _: value,
+        inner: type | None = None,
+    ) -> None:
+        self.expected, self.wrong, self.read, self.inner = expected, wrong, read, inner
 
 
 class Mistake(NamedTuple):

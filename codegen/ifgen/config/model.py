@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import os
 from collections.abc import Iterable, Mapping
@@ -30,12 +29,11 @@ from ifgen.config.keys import (
 from ifgen.config.suppressions import RosDistro
 from ifgen.diagnostics import Span, UsageError
 from ifgen.reading.storage import read_json
-from ifgen.writing import cache
 
 if TYPE_CHECKING:
     from ifgen.reading.search_path import WithDeps
 
-# Late imports: the parser of TOML, which a run does without that finds the table in the cache.
+# Late imports: what a command without a configuration does without, or with one that is cached.
 
 _WITH_DEPS: Final = Kind(
     'true, false or "own"', lambda value: () if isinstance(value, bool) or value == "own" else (value,)
@@ -98,6 +96,8 @@ class Config:
 
 def read_config(file: Path, data: bytes) -> Config | None:
     """The configuration in a pyproject.toml with these contents; None if it has none. Raises UsageError."""
+    import hashlib
+
     # Parsing TOML takes longer than all that follows, so its result is cached.
     digest = hashlib.sha256(data).hexdigest()
     cached = resources.cache_folder() / "config" / hashlib.sha256(os.fsencode(file)).hexdigest()[:32]
@@ -106,6 +106,7 @@ def read_config(file: Path, data: bytes) -> Config | None:
         if note["digest"] == digest and not _mistakes(note["table"]):
             return _config(file, note["table"])
     from ifgen.config.toml_text import diagnostic, parse, read_source
+    from ifgen.writing import cache
 
     source = read_source(file)
     tool = parse(source).get("tool")

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization, Distributions
-from ifgen.config.model import Config, read_config
 from ifgen.config.suppressions import Policy
 from ifgen.diagnostics import Diagnostic, Label, UsageError
 from ifgen.reading.storage import read_limited
 
+# Late imports: the keys of [tool.ifgen], which many commands do without.
+
 if TYPE_CHECKING:
+    from ifgen.config.model import Config
     from ifgen.reading.search_path import WithDeps
 
 _FILE = "pyproject.toml"
@@ -24,14 +26,14 @@ _FILE = "pyproject.toml"
 class Settings:
     """The interfaces, what to do with them, and the configuration for all that no option is about."""
 
-    paths: tuple[Path, ...] = ()
-    output: Path = Path("generated")
-    include: tuple[Path, ...] = ()
-    exclude: tuple[str, ...] = ()
-    with_deps: WithDeps = False
-    custom: Customization = field(default_factory=Customization)
-    policy: Policy = field(default_factory=Policy)
-    config: Config = field(default_factory=Config)
+    paths: tuple[Path, ...]
+    output: Path
+    include: tuple[Path, ...]
+    exclude: tuple[str, ...]
+    with_deps: WithDeps
+    custom: Customization
+    policy: Policy
+    config: Config
 
     @property
     def file(self) -> Path | None:
@@ -85,7 +87,7 @@ def settle(  # noqa: PLR0913 - one for each option
 
     With `isolated` there is none. Raises UsageError if that is wrong, or names what does not exist.
     """
-    config = Config() if isolated else _config()
+    config = _config(isolated)
     partial = bool(paths and config.paths)
     if not paths:
         _check_existence(config, "paths", config.paths)
@@ -127,13 +129,15 @@ def settle(  # noqa: PLR0913 - one for each option
 
 def configured_paths() -> tuple[Path, ...]:
     """The paths in the configuration that holds here, whether they exist or not."""
-    return _config().paths
+    return _config(False).paths
 
 
-def _config() -> Config:
+def _config(isolated: bool) -> Config:
     """The configuration in the nearest pyproject.toml upwards that has one; else the defaults."""
+    from ifgen.config.model import Config, read_config
+
     here = Path.cwd()
-    for path in (folder / _FILE for folder in (here, *here.parents)):
+    for path in (folder / _FILE for folder in (() if isolated else (here, *here.parents))):
         data = _contents(path) if path.is_file() else b""
         if b"ifgen" in data and (found := read_config(path, data)) is not None:
             return found
