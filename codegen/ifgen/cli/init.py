@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 import click
 
 from ifgen import resources
-from ifgen.cli import skeletons, terminal
+from ifgen.cli import terminal
 from ifgen.cli.arguments import EXISTING, OUTPUT_FOLDER
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
 from ifgen.reading.packages import find_packages
@@ -130,7 +130,7 @@ def _workflow(tests: str) -> _Change:
     lines = "".join(f"          {key}: {json.dumps(value)}\n" for key, value in said.items())
     lines = lines and f"        with:\n{lines}"
     text = _text(path)
-    return _Change(path, text, text or skeletons.WORKFLOW.format(revision=_REVISION, inputs=lines))
+    return _Change(path, text, text or resources.skeleton("workflow.yml", revision=_REVISION) + lines)
 
 
 def _hooks() -> _Change:
