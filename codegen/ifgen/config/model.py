@@ -100,7 +100,9 @@ def read_config(file: Path, data: bytes) -> Config | None:
 
     # Parsing TOML takes longer than all that follows, so its result is cached.
     digest = hashlib.sha256(data).hexdigest()
-    cached = resources.cache_folder() / "config" / hashlib.sha256(os.fsencode(file)).hexdigest()[:32]
+    cached = (
+        resources.cache_folder() / "config" / f"{hashlib.sha256(os.fsencode(file)).hexdigest()[:32]}.json"
+    )
     with suppress(OSError, ValueError, LookupError, TypeError):
         note = read_json(cached)
         if note["digest"] == digest and not _mistakes(note["table"]):
