@@ -34,6 +34,14 @@ def templates() -> Path:
     return _beside_or("templates", PACKAGE.parent.parent / "templates")
 
 
+def skeleton(file: str, /, **values: str) -> str:
+    """The first text of a file that `ifgen new` or `ifgen init` writes: `{key}` stands for a value."""
+    text = (PACKAGE / "cli/skeletons" / file).read_text(encoding="utf-8")
+    for key, value in values.items():
+        text = text.replace(f"{{{key}}}", value)
+    return text
+
+
 def bundled_interfaces() -> Path:
     """The interface packages that come with ifgen, one folder each."""
     return _beside_or("interfaces", PACKAGE.parent.parent / "interfaces")

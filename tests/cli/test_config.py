@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import tomllib
+from dataclasses import fields
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from ifgen.command_kit import report
-from ifgen.config import explain, model, toml_places
-from ifgen.config.customization import Customization
+from ifgen.config import toml_text
+from ifgen.config.customization import Customization, Output
+from ifgen.config.model import Config, read_config
 from ifgen.config.settings import Settings, settle
-from ifgen.config.silence import Policy
+from ifgen.config.suppressions import Policy
 from ifgen.diagnostics import Source, UsageError
 
 from .conftest import Run
@@ -28,7 +31,7 @@ def write(folder: Path, text: str) -> Path:
 def problem(tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch) -> str:
     monkeypatch.chdir(tmp_path)
     with pytest.raises(UsageError) as caught:
-        model.read(write(tmp_path, text))
+        read_config(write(tmp_path, text), text.encode())
     return report.for_people(caught.value.diagnostics).plain
 
 
@@ -55,20 +58,30 @@ def test_paths_are_relative_to_the_file_and_options_win(
     given = settle([Path("p")], Path("o"), None, False, Path("t"))
     custom = Customization(Path("t"), partial=True)
     assert given == Settings(
-        (Path("p"),),
-        Path("o"),
-        (),
-        False,
-        custom,
-        path,
-        Policy(base=tmp_path),
-        adapters=tmp_path / "adapters",
+        paths=(Path("p"),),
+        output=Path("o"),
+        include=(),
+        exclude=(),
+        with_deps=False,
+        custom=custom,
+        policy=Policy(base=tmp_path),
+        config=found.config,
     )
+    assert (found.config.file, found.config.adapters) == (path, tmp_path / "adapters")
 
 
 def test_no_configuration(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert settle() == Settings((), Path("generated"), (), False, Customization(), None)
+    assert settle() == Settings(
+        paths=(),
+        output=Path("generated"),
+        include=(),
+        exclude=(),
+        with_deps=False,
+        custom=Customization(),
+        policy=Policy(),
+        config=Config(),
+    )
     with pytest.raises(UsageError, match=r"no pyproject.toml with \[tool.ifgen\]"):
         settle().with_paths()
 
@@ -182,7 +195,7 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     path = tmp_path / "pyproject.toml"
     path.write_bytes(b"\xff\xfe")
     with pytest.raises(UsageError, match="is not UTF-8"):
-        model.read(path)
+        read_config(path, path.read_bytes())
 
 
 VALUES = st.sampled_from(
@@ -190,8 +203,7 @@ VALUES = st.sampled_from(
 )
 KEYS = st.sampled_from(
     [
-        *model.Config.model_fields,
-        *model.OutputConfig.model_fields,
+        *(field.name for cls in (Config, Output) for field in fields(cls)),
         "pathz",
         "outputs.docs",
         "outputs.docs.per",
@@ -224,7 +236,7 @@ def test_any_table_is_read_or_refused_with_a_place(
 ) -> None:
     path = write(tmp_path_factory.mktemp("c"), head + "\n".join(lines) + "\n")
     try:
-        model.read(path)
+        read_config(path, path.read_bytes())
     except UsageError as error:
         assert error.diagnostics
         assert all(d.primary is not None for d in error.diagnostics)
@@ -239,7 +251,7 @@ PIECES = st.sampled_from(
 @given(st.lists(PIECES, max_size=30).map("".join))
 def test_any_text_is_read_or_refused(text: str) -> None:
     try:
-        assert explain.parse(Source(Path("pyproject.toml"), text)) is not None
+        assert toml_text.parse(Source(Path("pyproject.toml"), text)) is not None
     except UsageError as error:
         assert report.for_people(error.diagnostics).plain
 
@@ -260,7 +272,7 @@ w = { x = { y = 1 }, z = "}" }
 v = 1
 """
     text = text.replace("\\n", "\n")
-    found = {".".join(path): text[start:end] for path, (start, end) in toml_places.places(text).items()}
+    found = {".".join(path): text[start:end] for path, (start, end) in toml_text.places(text).items()}
     assert list(found) == [
         *("tool", "tool.x y", "tool.x y.a", "tool.x y.a.b", "tool.x y.a.b.c d", "tool.x y.a.b.c d.q"),
         *("tool.x y.a.b.c d.r", "tool.x y.s", "tool.x y.t", "tool.x y.date", "tool.z", "tool.z.w"),
@@ -272,7 +284,7 @@ v = 1
 
 @given(st.text(st.sampled_from("ab.=[]{},#\"' \n\\\t1"), max_size=40))
 def test_places_end_for_any_text(text: str) -> None:
-    for path, (start, end) in toml_places.places(text).items():
+    for path, (start, end) in toml_text.places(text).items():
         assert text[start:end].strip("\"'") == path[-1]
 
 
@@ -284,15 +296,23 @@ def test_what_was_said_is_kept(tmp_path: Path, cache_folder: Path, monkeypatch: 
     text += '[tool.ifgen.outputs.a]\ntemplate = "a.j2"\npath = "{package}.md"\nper = "package"\nonly = ["x", "y"]\n'
     file = write(tmp_path, text)
     first = settle()
-    asked: list[Path] = []
-    monkeypatch.setattr(model, "read", lambda path, read=model.read: asked.append(path) or read(path))
+    parsed: list[Source] = []
+    parse = toml_text.parse
+    monkeypatch.setattr(toml_text, "parse", lambda source: parsed.append(source) or parse(source))
     assert settle() == first
-    assert asked == []
-    [kept] = [path for path in (cache_folder / "ifgen/config").iterdir() if str(tmp_path) in path.read_text()]
-    for damaged in (b"", b"\xff", b"[]", b'{"key": 1}', kept.read_bytes().replace(b'"paths"', b'"path"')):
-        kept.write_bytes(damaged)
+    assert parsed == []
+    digest = hashlib.sha256(file.read_bytes()).hexdigest()
+    [cached] = [path for path in (cache_folder / "ifgen/config").iterdir() if digest in path.read_text()]
+    for damaged in (
+        b"",
+        b"\xff",
+        b"[]",
+        b'{"digest": 1}',
+        cached.read_bytes().replace(b'"paths"', b'"path"'),
+    ):
+        cached.write_bytes(damaged)
         assert settle() == first
-    assert len(asked) == 5
+    assert len(parsed) == 5
     file.write_text(text.replace("false", "true"))
     assert settle().custom.tests
     file.write_text("[tool]  # no longer about ifgen\n")
@@ -301,7 +321,7 @@ def test_what_was_said_is_kept(tmp_path: Path, cache_folder: Path, monkeypatch: 
     for _ in range(2):  # a wrong configuration is not cached
         with pytest.raises(UsageError, match="with_deps"):
             settle()
-    assert len(asked) == 9
+    assert len(parsed) == 9
 
 
 MARK = 'from pathlib import Path\n(Path(__file__).parent / "ran").touch()\n'

@@ -14,7 +14,8 @@ from typing import Any
 import ifgen
 import pytest
 import yaml
-from ifgen.cli import project_files, skeletons
+from ifgen import resources
+from ifgen.cli import project_files
 
 from .support import ROOT, attempt, run
 
@@ -97,9 +98,9 @@ def test_names_and_versions_agree() -> None:
     """The names and versions that `ifgen init` writes exist."""
     hooks = [hook["id"] for hook in loaded(".pre-commit-hooks.yaml")]
     assert set(hooks) - set(project_files.HOOKS) == {"ifgen-breaking"}, "which needs a choice of a revision"
-    workflow = yaml.safe_load(skeletons.WORKFLOW.format(revision=f"v{ifgen.__version__}", inputs=""))
+    workflow = yaml.safe_load(resources.skeleton("workflow.yml", revision=f"v{ifgen.__version__}"))
     action = workflow["jobs"]["ifgen"]["steps"][1]["uses"]
-    assert action == f"{skeletons.REPOSITORY.removeprefix('https://github.com/')}@v{ifgen.__version__}"
+    assert action == f"{project_files.REPOSITORY.removeprefix('https://github.com/')}@v{ifgen.__version__}"
     assert {"working-directory", "generated"} <= loaded("action.yml")["inputs"].keys()
     pages = (ROOT / "docs/ci.md").read_text()
     for name in (*loaded("action.yml")["inputs"], *hooks, f"v{ifgen.__version__}"):

@@ -59,6 +59,16 @@ def test_only_what_changed_is_rendered(rendered: list[str], tmp_path: Path) -> N
     assert sorted(rendered) == ["base_msgs", "top_msgs"], "top_msgs holds a Base"
 
 
+def test_another_interface_of_a_dependency_does_not_count(rendered: list[str], tmp_path: Path) -> None:
+    (tmp_path / "ws/base_msgs/msg/Other.msg").write_text("int32 n\n")
+    (tmp_path / "ws/alone_msgs/msg/Alone.msg").write_text("base_msgs/Other other\n")
+    generate()
+    rendered.clear()
+    (tmp_path / "ws/base_msgs/msg/Other.msg").write_text("int64 n\n")
+    generate()
+    assert sorted(rendered) == ["alone_msgs", "base_msgs"]
+
+
 IDL = "module base_msgs {{ module msg {{ struct Base {{ {} n; }}; }}; }};"
 
 

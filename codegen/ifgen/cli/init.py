@@ -11,7 +11,6 @@ from pathlib import Path, PurePosixPath
 import click
 
 from ifgen import resources
-from ifgen.cli import skeletons
 from ifgen.command_kit import terminal
 from ifgen.command_kit.options import EXISTING, OUTPUT_FOLDER
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
@@ -85,10 +84,10 @@ class _Settings:
 def _settings(paths: Sequence[Path], output: Path | None) -> _Settings:
     """The current settings, else new ones. Raises UsageError if options contradict current settings."""
     from ifgen.cli import project_files
-    from ifgen.config import model
+    from ifgen.config.model import read_config
 
     text = _text(_PYPROJECT)
-    known = None if text is None else model.read(_PYPROJECT.absolute())
+    known = None if text is None else read_config(_PYPROJECT.absolute(), text.encode())
     if known is not None:
         if paths or output is not None:
             message = f"{_PYPROJECT} has [tool.ifgen] already"
@@ -131,7 +130,7 @@ def _workflow(tests: str) -> _Change:
     lines = "".join(f"          {key}: {json.dumps(value)}\n" for key, value in said.items())
     lines = lines and f"        with:\n{lines}"
     text = _text(path)
-    return _Change(path, text, text or skeletons.WORKFLOW.format(revision=_REVISION, inputs=lines))
+    return _Change(path, text, text or resources.skeleton("workflow.yml", revision=_REVISION) + lines)
 
 
 def _hooks() -> _Change:

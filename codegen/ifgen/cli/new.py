@@ -10,7 +10,6 @@ from pathlib import Path
 import click
 
 from ifgen import resources
-from ifgen.cli import skeletons
 from ifgen.command_kit.options import OUTPUT_FOLDER
 from ifgen.config.settings import configured_paths
 from ifgen.definition import file_names, names
@@ -73,7 +72,7 @@ def interface(name: str, folder: Path | None, colcon: bool) -> int:
     path = root / kind / f"{own}.{kind}"
     is_wanted = not (root / "package.xml").exists() and (colcon or _is_in_workspace(root))
     package = _interface_package(root, package_name) if is_wanted else {}
-    _write({**package, path: skeletons.INTERFACES[kind]})
+    _write({**package, path: resources.skeleton(f"interface.{kind}")})
     if _is_left_out(path):
         click.echo(
             f"add {kind}/{path.name} to the list in {shown_path(root / 'CMakeLists.txt')}, or it is left out"
@@ -101,11 +100,11 @@ def node(name: str, folder: Path | None) -> int:
         if (other := path.with_name(own + extension)) != path and other.exists():
             raise _existing([other])
     manifest = root / "package.xml"
-    package = {manifest: skeletons.NODE_PACKAGE.format(name=package_name or own)}
+    package = {manifest: resources.skeleton("node_package.xml", name=package_name or own)}
     _write(
         {
             **({} if manifest.exists() else package),
-            path: skeletons.NODE.format(name=own, schema=resources.NODL_SCHEMA),
+            path: resources.skeleton("node.nodl.yaml", name=own, schema=resources.NODL_SCHEMA),
         }
     )
     _print_next(f"ifgen check {shown_path(root)}", f"ifgen generate {shown_path(root)}")
@@ -154,8 +153,8 @@ def _is_left_out(path: Path) -> bool:
 def _interface_package(root: Path, name: str) -> dict[Path, str]:
     """The files that colcon needs to build an interface package."""
     return {
-        root / "package.xml": skeletons.INTERFACE_PACKAGE.format(name=name),
-        root / "CMakeLists.txt": skeletons.INTERFACE_CMAKE.format(name=name),
+        root / "package.xml": resources.skeleton("interface_package.xml", name=name),
+        root / "CMakeLists.txt": resources.skeleton("CMakeLists.txt", name=name),
     }
 
 

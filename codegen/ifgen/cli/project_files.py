@@ -8,14 +8,21 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Any, cast
+from typing import Any, Final, cast
 
 import yaml
 
-from ifgen.cli import skeletons
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, UsageError, shown_path
 
-HOOKS = ("ifgen-check", "ifgen-generate")
+REPOSITORY: Final = "https://github.com/ifgen-ros/ifgen"
+
+_ATTRIBUTES: Final = {
+    "{}/**": "text=auto eol=lf linguist-generated",
+    "{}/*/*/[!_]*.py": "-linguist-generated",
+}
+"""Attributes for git of files in the output folder: their line ends, and which of them need no review."""
+
+HOOKS: Final = ("ifgen-check", "ifgen-generate")
 """The hooks that .pre-commit-hooks.yaml offers."""
 
 
@@ -40,13 +47,13 @@ def with_attributes(text: str, output: PurePosixPath) -> str:
     """A .gitattributes that has lines for the output folder; those that it has for the same files stay."""
     pattern = re.sub(r"([\\*?\[])", r"\\\1", str(output))
     known = {match[1] for match in re.finditer(r'^[ \t]*("(?:[^"\\\n]|\\.)*"|[^\s"]\S*)', text, re.MULTILINE)}
-    lines = ((_quoted(files.format(pattern)), words) for files, words in skeletons.ATTRIBUTES.items())
+    lines = ((_quoted(files.format(pattern)), words) for files, words in _ATTRIBUTES.items())
     return _appended(text, [f"{files} {words}" for files, words in lines if files not in known])
 
 
 def with_hooks(path: Path, text: str, revision: str) -> str:
     """A .pre-commit-config.yaml that has our hooks. Raises UsageError if they cannot be added."""
-    entry = [f"- repo: {skeletons.REPOSITORY}", f"  rev: {revision}", "  hooks:"]
+    entry = [f"- repo: {REPOSITORY}", f"  rev: {revision}", "  hooks:"]
     entry += [f"    - id: {hook}" for hook in HOOKS]
     root = _composed(path, text)
     if root is None:

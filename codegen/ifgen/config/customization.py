@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
+from ifgen.config.keys import key, list_of, one_of, required, text
 from ifgen.diagnostics import Span
 
 Per = Literal["package", "interface", "node", "run"]
@@ -22,10 +23,10 @@ class Output:
     """
 
     name: str
-    template: str
-    path: str
-    per: Per
-    only: tuple[str, ...] = ()
+    template: str = required(text("the name of a template in quotes"))
+    path: str = required(text('a pattern in quotes, such as "{package}/{interface:snake}.md"'))
+    per: Per = required(one_of(*get_args(Per)))
+    only: tuple[str, ...] = key(list_of(text(""), 'a list of patterns, such as ["demo_msgs", "*/srv/*"]'), [])
     span: Span | None = field(default=None, compare=False, repr=False)
 
 

@@ -1,117 +1,143 @@
-"""`[tool.ifgen]` in pyproject.toml, the only configuration: what it may say, and what is wrong with it."""
+"""`[tool.ifgen]` in pyproject.toml, the only configuration: its keys."""
 
 from __future__ import annotations
 
-from pathlib import Path as AnyPath
-from typing import Annotated, Literal, TypeAlias, cast
+import json
+import os
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, cast, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
+from ifgen import resources
+from ifgen.config.customization import Output
+from ifgen.config.keys import (
+    FLAG,
+    PATH,
+    PATHS,
+    Kind,
+    Mistake,
+    key,
+    list_of,
+    mistakes,
+    one_of,
+    read,
+    table_of,
+    text,
+)
+from ifgen.config.suppressions import RosDistro
+from ifgen.diagnostics import Span, UsageError
+from ifgen.reading.storage import read_json
 
-from ifgen.config.customization import Per
-from ifgen.config.explain import diagnostic, parse, read_source, unknown_rules
-from ifgen.config.ros_distro import RosDistro
-from ifgen.diagnostics import UsageError
+if TYPE_CHECKING:
+    from ifgen.reading.search_path import WithDeps
 
-# Empty, or as PEP 508 begins. pip reads the rest.
-Requirement: TypeAlias = Annotated[
-    str, Field(pattern=r"^([A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9])? *([\[<>=!~;@(].*)?)?$")
-]
+# Late imports: what a command without a configuration does without, or with one that is cached.
 
-
-def _without_nul(path: AnyPath) -> AnyPath:
-    if "\0" in str(path):
-        raise ValueError
-    return path
-
-
-Path: TypeAlias = Annotated[AnyPath, AfterValidator(_without_nul)]
-"""The path of a file. The system takes a NUL for its end, or fails."""
-
-
-class OutputConfig(BaseModel):
-    """The keys of `[tool.ifgen.outputs.NAME]`: `customization.Output` as it is written."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    template: str = Field(description="your template, by its path in the folder of templates")
-    path: str = Field(description="the pattern of the path to write to, in the output folder")
-    per: Per = Field(description="one file for each package, interface, node or run")
-    only: tuple[str, ...] = Field(default=(), description="patterns of packages, interfaces and nodes")
+_WITH_DEPS: Final = Kind(
+    'true, false or "own"', lambda value: () if isinstance(value, bool) or value == "own" else (value,)
+)
+_OUTPUTS: Final = Kind(
+    "a table, whose keys are names for outputs",
+    lambda value: () if isinstance(value, dict) else (value,),
+    lambda tables, base: {name: Output(name, **read(Output, table, base)) for name, table in tables.items()},
+    Output,
+)
+_DISTRIBUTIONS: Final = text(
+    'a name with {package} in it, such as "acme-{package}"',
+    r"([A-Za-z0-9][A-Za-z0-9._-]*)?\{package\}([A-Za-z0-9._-]*[A-Za-z0-9])?",
+)
+_REQUIREMENTS: Final = table_of(
+    # Empty, or as PEP 508 begins. pip reads the rest.
+    text("", r"([A-Za-z0-9]([A-Za-z0-9._-]*[A-Za-z0-9])? *([\[<>=!~;@(].*)?)?"),
+    'a table of what pip installs, such as {nav2_msgs = "acme-nav2-msgs>=1.2"}',
+)
+_PATTERNS: Final = list_of(text(""), 'a list of packages or patterns, such as ["demo_msgs", "*/srv/*"]')
+_RULES: Final = list_of(text(""), 'a list of rules, such as ["keyword-name"]', frozenset)
+_RULES_OF_FILES: Final = table_of(
+    _RULES, 'a table of lists of rules, such as {"vendor/*" = ["keyword-name"]}'
+)
 
 
-class Config(BaseModel):
-    """The keys of `[tool.ifgen]`. Paths are relative to its file, and absolute after reading.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Config:
+    """The keys of `[tool.ifgen]`, with their defaults, and the `file` that has them.
 
-    An option on the command line wins over its key here.
+    Each key is written here and nowhere else. An option on the command line wins over its key.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    file: Path | None = None
+    paths: tuple[Path, ...] = key(PATHS, [])
+    output: Path = key(PATH, "generated")
+    include: tuple[Path, ...] = key(PATHS, [])
+    exclude: tuple[str, ...] = key(_PATTERNS, [])
+    with_deps: WithDeps = key(_WITH_DEPS, False)
+    tests: bool = key(FLAG, True)
+    templates: Path | None = key(PATH)
+    filters: Path | None = key(PATH)
+    outputs: Mapping[str, Output] = key(_OUTPUTS, {})
+    distributions: str | None = key(_DISTRIBUTIONS)
+    requirements: Mapping[str, str] = key(_REQUIREMENTS, {})
+    ignore: frozenset[str] = key(_RULES, [])
+    per_file_ignores: Mapping[str, frozenset[str]] = key(_RULES_OF_FILES, {})
+    strict: bool = key(FLAG, False)
+    breaking: str = key(one_of("source", "hash", "wire"), "source")
+    adapters: Path = key(PATH, "adapters")
+    ros_distro: RosDistro | None = key(one_of(*get_args(RosDistro)))
 
-    paths: tuple[Path, ...] = Field(default=(), description="what to generate: PATH...")
-    output: Path = Field(default=AnyPath("generated"), description="where to: -o")
-    include: tuple[Path, ...] = Field(default=(), description="where dependencies are: -I")
-    exclude: tuple[str, ...] = Field(
-        default=(), description="patterns of packages, interfaces and nodes to leave out: --exclude"
-    )
-    with_deps: bool | Literal["own"] = Field(
-        default=False, description="generate the dependencies too, or your own ones: --with-deps"
-    )
-    tests: bool = Field(default=True, strict=True, description="generate tests: --tests, --no-tests")
-    templates: Path | None = Field(default=None, description="your templates: --templates")
-    filters: Path | None = Field(default=None, description="a Python file with filters for templates")
-    outputs: dict[str, OutputConfig] = Field(default={}, description="your own files to generate")
-    distributions: str | None = Field(
-        default=None,
-        pattern=r"^([A-Za-z0-9][A-Za-z0-9._-]*)?\{package\}([A-Za-z0-9._-]*[A-Za-z0-9])?$",
-        description="names for pip, which can then install generated packages",
-    )
-    requirements: dict[str, Requirement] = Field(
-        default={}, description="what pip installs for packages that are generated elsewhere"
-    )
-    ignore: tuple[str, ...] = Field(default=(), description="rules whose warnings are not reported")
-    per_file_ignores: dict[str, tuple[str, ...]] = Field(
-        default={}, description="the same for files, by patterns of their paths"
-    )
-    strict: bool = Field(default=False, strict=True, description="warnings are errors: --strict")
-    breaking: Literal["source", "hash", "wire"] = Field(
-        default="source", description="what no change may break: --category"
-    )
-    adapters: Path = Field(
-        default=AnyPath("adapters"), description="where adapters are: --output of `ifgen adapt`"
-    )
-    ros_distro: RosDistro | None = Field(default=None, description="the ROS 2 that the interfaces are for")
+    def place(self, *path: str) -> Span:
+        """The place of a key in the file."""
+        from ifgen.config.toml_text import find_key, read_source
 
-    @field_validator("with_deps", mode="plain")
-    @classmethod
-    def _one_of_three(cls, value: object) -> object:
-        # A union of the types would have something to say for each of them.
-        if isinstance(value, bool) or value == "own":
-            return value
-        raise ValueError
+        assert self.file is not None, "only a file has keys"
+        return find_key(read_source(self.file), path)
 
 
-def read(path: AnyPath) -> Config | None:
-    """The configuration in a pyproject.toml; None if it has no `[tool.ifgen]`. Raises UsageError."""
-    source = read_source(path)
+def read_config(file: Path, data: bytes) -> Config | None:
+    """The configuration in a pyproject.toml with these contents; None if it has none. Raises UsageError."""
+    import hashlib
+
+    # Parsing TOML takes longer than all that follows, so its result is cached.
+    digest = hashlib.sha256(data).hexdigest()
+    cached = (
+        resources.cache_folder() / "config" / f"{hashlib.sha256(os.fsencode(file)).hexdigest()[:32]}.json"
+    )
+    with suppress(OSError, ValueError, LookupError, TypeError):
+        note = read_json(cached)
+        if note["digest"] == digest and not _mistakes(note["table"]):
+            return _config(file, note["table"])
+    from ifgen.config.toml_text import diagnostic, parse, read_source
+    from ifgen.writing import cache
+
+    source = read_source(file)
     tool = parse(source).get("tool")
-    table: object = cast("dict[str, object]", tool).get("ifgen") if isinstance(tool, dict) else None
+    table = cast("dict[str, Any]", tool).get("ifgen") if isinstance(tool, dict) else None
+    if found := _mistakes(table):
+        raise UsageError(diagnostic(source, mistake) for mistake in found)
+    cache.keep(cached, json.dumps({"digest": digest, "table": table}))
+    return _config(file, table)
+
+
+def _config(file: Path, table: Any) -> Config | None:
+    return None if table is None else Config(file=file, **read(Config, table, file.parent))
+
+
+def _mistakes(table: Any) -> list[Mistake]:
+    """The mistakes in `[tool.ifgen]`: those of its keys or, if there are none, of the rules to ignore."""
     if table is None:
-        return None
-    try:
-        config = Config.model_validate(table)
-    except ValidationError as error:
-        keys = (Config.model_fields, OutputConfig.model_fields)
-        raise UsageError(diagnostic(source, dict(e), *keys) for e in error.errors()) from None
-    if problems := list(unknown_rules(source, config.ignore, config.per_file_ignores)):
-        raise UsageError(problems)
-    base = path.parent
-    return config.model_copy(
-        update={
-            "paths": tuple(base / p for p in config.paths),
-            "output": base / config.output,
-            "adapters": base / config.adapters,
-            "include": tuple(base / p for p in config.include),
-            "templates": None if config.templates is None else base / config.templates,
-            "filters": None if config.filters is None else base / config.filters,
-        }
-    )
+        return []
+    if found := list(mistakes(Config, table, "tool.ifgen")):
+        return found
+    rules: dict[tuple[str, ...], Iterable[str]] = {("ignore",): table.get("ignore", ())}
+    rules |= {("per_file_ignores", pattern): of for pattern, of in table.get("per_file_ignores", {}).items()}
+    if not any(rules.values()):
+        return []
+    from ifgen.config import rulebook  # a page to parse, which few runs need
+
+    return [
+        Mistake(path, why_not[0], f"in '{path[0]}'", why_not[1], rule)
+        for path, listed in rules.items()
+        for rule in listed
+        if (why_not := rulebook.why_not_ignored(rule))
+    ]

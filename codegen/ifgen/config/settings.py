@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.config.customization import Customization
-from ifgen.config.silence import Policy
-from ifgen.diagnostics import Diagnostic, UsageError
+from ifgen.config.customization import Customization, Distributions
+from ifgen.config.suppressions import Policy
+from ifgen.diagnostics import Diagnostic, Label, UsageError
 from ifgen.reading.storage import read_limited
 
+# Late imports: the keys of [tool.ifgen], which many commands do without.
+
 if TYPE_CHECKING:
-    from ifgen.config.kept import Configuration
+    from ifgen.config.model import Config
     from ifgen.reading.search_path import WithDeps
 
 _FILE = "pyproject.toml"
@@ -22,18 +24,21 @@ _FILE = "pyproject.toml"
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """The interfaces, what to do with them, and the pyproject.toml that was read, if any."""
+    """The interfaces, what to do with them, and the configuration for all that no option is about."""
 
     paths: tuple[Path, ...]
     output: Path
     include: tuple[Path, ...]
+    exclude: tuple[str, ...]
     with_deps: WithDeps
     custom: Customization
-    file: Path | None
-    policy: Policy = field(default_factory=Policy)
-    breaking: str = "source"
-    adapters: Path = Path("adapters")
-    exclude: tuple[str, ...] = ()
+    policy: Policy
+    config: Config
+
+    @property
+    def file(self) -> Path | None:
+        """The pyproject.toml that was read, if any."""
+        return self.config.file
 
     def with_paths(self) -> Settings:
         """The same settings, for a command that needs paths. Raises UsageError if there are none."""
@@ -82,66 +87,72 @@ def settle(  # noqa: PLR0913 - one for each option
 
     With `isolated` there is none. Raises UsageError if that is wrong, or names what does not exist.
     """
-    found = None if isolated else _find(Path.cwd())
-    sourced = os.environ.get("ROS_DISTRO")
-    custom = Customization(templates, tests=tests is not False, ros_distro=sourced)
-    policy = Policy(strict=bool(strict))
-    if found is not None:
-        partial = bool(paths and found.paths)
-        paths = paths or found.existing("paths", found.paths)
-        include = (*(include or ()), *found.existing("include", found.include))
-        exclude = (*exclude, *(() if partial else found.exclude))
-        output = output or found.output
-        with_deps = found.with_deps if with_deps is None else with_deps
-        configured = found.existing("templates", (found.templates,)) if found.templates is not None else ()
-        if found.filters is not None:
-            found.existing("filters", (found.filters,))
-        tests = found.tests if tests is None else tests
-        behind = configured[0] if configured and templates is not None else None
-        templates = templates or next(iter(configured), None)
-        custom = Customization(
-            templates,
-            found.filters,
-            found.outputs(),
-            partial,
-            tests,
-            behind,
-            found.distributions(),
-            found.requirements,
-            found.ros_distro or sourced,
-        )
-        strict = found.strict if strict is None else strict
-        policy = Policy(found.ignore, found.per_file_ignores, found.file.parent, strict)
+    config = _config(isolated)
+    partial = bool(paths and config.paths)
+    if not paths:
+        _check_existence(config, "paths", config.paths)
+    _check_existence(config, "include", config.include)
+    _check_existence(config, "templates", (config.templates,))
+    _check_existence(config, "filters", (config.filters,))
+    custom = Customization(
+        templates=templates or config.templates,
+        filters=config.filters,
+        outputs=tuple(
+            replace(output, span=config.place("outputs", name)) for name, output in config.outputs.items()
+        ),
+        partial=partial,
+        tests=config.tests if tests is None else tests,
+        behind=config.templates if templates is not None else None,
+        distributions=None
+        if config.distributions is None
+        else Distributions(config.distributions, config.place("distributions")),
+        requirements=config.requirements,
+        ros_distro=config.ros_distro or os.environ.get("ROS_DISTRO"),
+    )
+    policy = Policy(
+        rules=config.ignore,
+        per_file=config.per_file_ignores,
+        base=config.file.parent if config.file else Path(),
+        strict=config.strict if strict is None else strict,
+    )
     return Settings(
-        tuple(paths or ()),
-        output or Path("generated"),
-        tuple(include or ()),
-        with_deps or False,
-        custom,
-        None if found is None else found.file,
-        policy,
-        "source" if found is None else found.breaking,
-        Path("adapters") if found is None else found.adapters,
-        tuple(exclude),
+        paths=tuple(paths or config.paths),
+        output=output or config.output,
+        include=(*(include or ()), *config.include),
+        exclude=(*exclude, *(() if partial else config.exclude)),
+        with_deps=config.with_deps if with_deps is None else with_deps,
+        custom=custom,
+        policy=policy,
+        config=config,
     )
 
 
 def configured_paths() -> tuple[Path, ...]:
     """The paths in the configuration that holds here, whether they exist or not."""
-    found = _find(Path.cwd())
-    return found.paths if found is not None else ()
+    return _config(False).paths
 
 
-def _find(start: Path) -> Configuration | None:
-    """The contents of the nearest pyproject.toml upwards that has a `[tool.ifgen]` table."""
-    for folder in (start, *start.parents):
-        path = folder / _FILE
-        if path.is_file() and b"ifgen" in (data := _contents(path)):
-            from ifgen.config import kept  # not needed if the file never mentions ifgen
+def _config(isolated: bool) -> Config:
+    """The configuration in the nearest pyproject.toml upwards that has one; else the defaults."""
+    from ifgen.config.model import Config, read_config
 
-            if (found := kept.read(path, data)) is not None:
-                return found
-    return None
+    here = Path.cwd()
+    for path in (folder / _FILE for folder in (() if isolated else (here, *here.parents))):
+        data = _contents(path) if path.is_file() else b""
+        if b"ifgen" in data and (found := read_config(path, data)) is not None:
+            return found
+    return Config()
+
+
+def _check_existence(config: Config, key: str, paths: Iterable[Path | None]) -> None:
+    """Raise UsageError for the paths of a key that do not exist."""
+    if missing := [path for path in paths if path is not None and not path.exists()]:
+        label = Label(config.place(key))
+        advice = "`ifgen new interface demo_msgs/msg/Name` makes it" if key == "paths" else None
+        message = f"'{key}' in [tool.ifgen] names {{}}, which does not exist"
+        raise UsageError(
+            Diagnostic("configuration", message.format(path), label, help=advice) for path in missing
+        )
 
 
 def _is_of_others(path: Path) -> bool:
@@ -153,4 +164,4 @@ def _contents(path: Path) -> bytes:
     try:
         return read_limited(path)
     except OSError:
-        return b"ifgen may be in there"  # config.read says what is wrong
+        return b"ifgen may be in there"  # `read_config` says what is wrong

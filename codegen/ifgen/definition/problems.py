@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Final, ParamSpec
 
-from ifgen.config import silence
+from ifgen.config import suppressions
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Label, Source, Span
 
 P = ParamSpec("P")
@@ -56,11 +56,11 @@ class FileProblems:
         return found
 
     def warnings(self) -> list[Diagnostic]:
-        """The warnings by their place, without those that comments in the file silence."""
+        """The warnings by their place, without those that comments in the file suppressions."""
         if not self._with_warnings:
             return []
         complete = self.sees_all and not self._errors
-        return silence.by_comments(self._source, sorted(self._warnings, key=_place), complete=complete)
+        return suppressions.by_comments(self._source, sorted(self._warnings, key=_place), complete=complete)
 
     def _more(self) -> Diagnostic:
         end = len(self._source.text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ifgen.config.silence import without_directive
+from ifgen.config.suppressions import without_directive
 
 
 def _comment(line: str) -> str | None:

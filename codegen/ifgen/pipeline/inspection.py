@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization
-from ifgen.config.ros_distro import judged
+from ifgen.config.suppressions import judged
 from ifgen.diagnostics import Diagnostic, InputError, any_errors
 from ifgen.reading.packages import find_packages
 from ifgen.reading.search_path import SearchPath
@@ -104,12 +104,12 @@ def inspect_templates(
         return found
     try:
         packages = find_packages(paths)
-        request = Request(tuple(paths), packages, SearchPath(packages, include), output, custom=custom)
+        request = Request(tuple(paths), packages, SearchPath(packages, include), output, {}, custom=custom)
         resolved = resolve(request)
     except InputError:
         return found
     try:
-        deque(render(plan(resolved, custom, UpToDate()), custom), maxlen=0)
+        deque(render(plan(request, resolved, UpToDate()), custom), maxlen=0)
     except InputError as error:
         found += error.diagnostics
     return found

@@ -9,9 +9,8 @@ from pathlib import Path
 
 from ifgen import resources
 from ifgen.diagnostics import Diagnostic, shown_path
-from ifgen.pipeline.previous_output import manifest_of
+from ifgen.pipeline.values import Request
 from ifgen.reading.packages import PackageFiles
-from ifgen.reading.search_path import SearchPath
 from ifgen.writing.write import EDITED, set_aside
 
 
@@ -52,16 +51,17 @@ def overwritten(paths: Sequence[Path], output: Path) -> Iterator[Diagnostic]:
 
 
 def missing_packages(
-    needed: Iterable[str], search: SearchPath, output: Path, removed: Collection[str]
+    needed: Iterable[str], request: Request, removed: Collection[str]
 ) -> Iterator[Diagnostic]:
     """Say which packages are needed, come out of folders of the user's, and will not be there at run time.
 
-    `needed` are those that this run does not generate, `removed` those that it removes from `output`.
+    `needed` are those that this run does not generate, `removed` those that it removes from the output.
     Packages that are installed, or come with ifgen, have their own Python.
     """
     for name in sorted(needed):
-        package = search.package(name)
-        if package is not None and search.is_own(name) and not _is_there(name, output, removed):
+        package = request.search.package(name)
+        is_there = name in request.previous.keys() - removed or _is_installed(name)
+        if package is not None and request.search.is_own(name) and not is_there:
             yield Diagnostic(
                 "not-generated",
                 f"nothing provides package '{name}' at run time: it is needed, but not generated",
@@ -70,9 +70,7 @@ def missing_packages(
             )
 
 
-def _is_there(name: str, output: Path, removed: Collection[str]) -> bool:
-    return (
-        (name not in removed and manifest_of(output / name) is not None)
-        or (resources.bundled_generated() / name).is_dir()
-        or importlib.machinery.PathFinder.find_spec(name, sys.path) is not None
-    )
+def _is_installed(name: str) -> bool:
+    return (resources.bundled_generated() / name).is_dir() or importlib.machinery.PathFinder.find_spec(
+        name, sys.path
+    ) is not None

@@ -14,9 +14,8 @@ from ifgen.generator_py.messages.classes import Facts
 from ifgen.generator_py.messages.package import module_path, plan_interface, plan_shared
 from ifgen.generator_py.templates.render import Templates
 from ifgen.generator_py.tests.package import plan_interface_tests, plan_node_tests, plan_users_tests
-from ifgen.pipeline import previous_output
 from ifgen.pipeline.cache.fresh import UpToDate
-from ifgen.pipeline.values import PlannedPackage, Progress, ResolvedInput, Target
+from ifgen.pipeline.values import PlannedPackage, Progress, Request, ResolvedInput, Target
 from ifgen.reading import package_xml
 from ifgen.reading.packages import NODE_FOLDER
 from ifgen.writing.write import ROOT, OutputPackage
@@ -30,16 +29,17 @@ if TYPE_CHECKING:
 
 
 def plan(
-    resolved: ResolvedInput, custom: Customization, up_to_date: UpToDate, progress: Progress | None = None
+    request: Request, resolved: ResolvedInput, up_to_date: UpToDate, progress: Progress | None = None
 ) -> Iterator[PlannedPackage]:
     """The files of a run that are not up to date, a package at a time, so that `progress` hears of each.
 
     Raises InputError for outputs of the user's that cannot be.
     """
+    custom = request.custom
     targets = [target for target in resolved.targets if target.name not in up_to_date.packages]
     if not targets and not custom.outputs:
         return
-    planning = _Planning(resolved, custom, up_to_date)
+    planning = _Planning(request, resolved, up_to_date)
     outputs = _Outputs(custom, resolved) if custom.outputs else None
     for done, target in enumerate(targets):
         if progress:
@@ -48,7 +48,7 @@ def plan(
         yield outputs.added_to(package) if outputs else package
     root = outputs.of_run() if outputs else {}
     # An earlier run may have made some, which go if there are none now.
-    if root or (not custom.partial and previous_output.manifest_of(resolved.output / ROOT)):
+    if root or (not custom.partial and ROOT in request.previous):
         yield PlannedPackage(ROOT, root)
 
 
@@ -77,12 +77,13 @@ def _texts(files: Mapping[str, Artifact | OutputFile], templates: Templates) -> 
 class _Planning:
     """Plans the packages of a run."""
 
-    def __init__(self, resolved: ResolvedInput, custom: Customization, up_to_date: UpToDate) -> None:
+    def __init__(self, request: Request, resolved: ResolvedInput, up_to_date: UpToDate) -> None:
+        self._request = request
+        self._custom = request.custom
         self._resolved = resolved
-        self._custom = custom
         self._up_to_date = up_to_date
         self._facts = Facts(resolved.registry)
-        self._sources = {p.name: previous_output.source_of(p, resolved.output) for p in resolved.packages}
+        self._sources = {package.name: request.source_of(package) for package in resolved.packages}
 
     def package(self, target: Target) -> PlannedPackage:
         """The files of a package."""
@@ -123,7 +124,7 @@ class _Planning:
         resolved = self._resolved
         root = next((package.root for package in resolved.packages if package.name == target.name), None)
         said = (package_xml.texts(root) if root else None) or {}
-        ours = {target.name for target in resolved.targets} | previous_output.packages_in(resolved.output)
+        ours = {target.name for target in resolved.targets} | (self._request.previous.keys() - {ROOT})
         yield plan_project(
             target.name, target.interfaces, target.nodes, said, distributions, self._custom.requirements, ours
         )

@@ -13,7 +13,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ifgen.config.ros_distro import refused
+from ifgen.config.suppressions import refused
 from ifgen.definition.explain import did_you_mean
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import one_for_each_cause

@@ -166,7 +166,8 @@ def _read(  # noqa: PLR0913 - the options of the functions above
     exclude: Sequence[str] = (),
     keep_going: bool = False,
 ) -> Request:
-    packages = tuple(previous_output.with_siblings(package, output) for package in find_packages(paths))
+    previous = previous_output.manifests_in(output)
+    packages = tuple(previous_output.with_siblings(package, previous) for package in find_packages(paths))
     excluded: tuple[str, ...] = ()
     if exclude:
         from ifgen.pipeline.resolution import without_excluded
@@ -183,6 +184,7 @@ def _read(  # noqa: PLR0913 - the options of the functions above
         packages=packages,
         search=SearchPath(packages, include),
         output=output,
+        previous=previous,
         with_deps=with_deps,
         custom=templates
         if isinstance(templates, Customization)
@@ -202,7 +204,7 @@ def _build(request: Request, up_to_date: UpToDate, progress: Progress | None) ->
     if request.condition is not None:
         request.condition.check(resolved.registries)
     return BuildResult(
-        packages=render(plan(resolved, request.custom, up_to_date, progress), request.custom),
+        packages=render(plan(request, resolved, up_to_date, progress), request.custom),
         generated={target.name for target in resolved.targets},
         needed=resolved.needed,
         diagnostics=resolved.diagnostics(),
@@ -216,7 +218,7 @@ class _Change:
 
     def __init__(self, request: Request, result: BuildResult) -> None:
         self.result = result
-        self._output, self._search = request.output, request.search
+        self._request, self._output = request, request.output
         self._removed = previous_output.to_remove(request, result)
         self._left_behind: list[Path] = []
 
@@ -229,9 +231,7 @@ class _Change:
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of the run, and about the output after it."""
         left_behind = map(output_diagnostics.left_behind, sorted(self._left_behind))
-        missing = output_diagnostics.missing_packages(
-            self.result.needed, self._search, self._output, self._removed
-        )
+        missing = output_diagnostics.missing_packages(self.result.needed, self._request, self._removed)
         return (*self.result.diagnostics, *left_behind, *missing)
 
     def effects(self, written: Written) -> Generated:

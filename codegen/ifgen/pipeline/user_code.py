@@ -8,7 +8,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from functools import partial
 from pathlib import Path
 
-from ifgen.config import silence
+from ifgen.config import suppressions
 from ifgen.definition.explain import did_you_mean
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, shorten
 from ifgen.generator_py.nodes.classes import user_module
@@ -49,7 +49,7 @@ def _compared(path: Path, look: Callable[[Source, ast.Module], Iterator[Diagnost
     except InputError as error:
         return error.diagnostics
     found = sorted(look(source, tree), key=lambda d: d.primary.span.start if d.primary else 0)
-    return silence.by_comments(source, found)
+    return suppressions.by_comments(source, found)
 
 
 def _missing_functions(functions: Iterable[str], source: Source, tree: ast.Module) -> Iterator[Diagnostic]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -39,20 +41,29 @@ class Condition:
 class Request:
     """The packages at `paths` to generate into the folder `output`, and the places to look for others.
 
-    `with_deps` says which dependencies come along, `custom` has what the user adds. A run that does not meet
-    the `condition` writes nothing. `excluded` are the names of packages, interfaces and nodes that the user
-    leaves out; a run that is to `keep_going` leaves out what is wrong, too.
+    `previous` are the manifests of the packages that earlier runs left there. `with_deps` says which
+    dependencies come along, `custom` has what the user adds. A run that does not meet the `condition` writes
+    nothing. `excluded` are the names of packages, interfaces and nodes that the user leaves out; a run that
+    is to `keep_going` leaves out what is wrong, too.
     """
 
     paths: tuple[Path, ...]
     packages: tuple[PackageFiles, ...]
     search: SearchPath
     output: Path
+    previous: Mapping[str, Manifest]
     with_deps: WithDeps = False
     custom: Customization = Customization()  # noqa: RUF009 - it is frozen
     condition: Condition | None = None
     excluded: tuple[str, ...] = ()
     keep_going: bool = False
+
+    def source_of(self, package: PackageFiles) -> str:
+        """The folder of a package that was asked for, seen from the output folder."""
+        root = package.root.resolve()
+        with suppress(ValueError):  # on another drive
+            return Path(os.path.relpath(root, self.output.resolve())).as_posix()
+        return root.as_posix()
 
 
 @dataclass(frozen=True, slots=True)

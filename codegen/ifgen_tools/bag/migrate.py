@@ -82,7 +82,7 @@ def migrate(
 
 def _import_adapters(module: str) -> None:
     """Register the user's adapters: those of a module, or those in the folder of the configuration."""
-    folder = settle().adapters
+    folder = settle().config.adapters
     if not module and not (folder / "__init__.py").is_file():
         return
     sys.path.insert(0, str(Path.cwd() if module else folder.parent))

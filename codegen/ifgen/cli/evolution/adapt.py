@@ -55,7 +55,7 @@ def adapt(type_: str, reference: str, downgrade: bool, output: Path | None, incl
 
     settings = settle(None, None, include).trusted()
     base = settings.file.parent if settings.file else Path.cwd()
-    folder = output or settings.adapters
+    folder = output or settings.config.adapters
     planned = plan(type_, reference, settings.paths, settings.include, base, downgrade=downgrade)
     if (folder / planned.module.path).exists():
         raise UsageError([_existing(folder, planned)])

@@ -13,7 +13,7 @@ from ifgen.cli.generate import without_garbage_collection
 from ifgen.command_kit import completion, terminal
 from ifgen.command_kit.options import EXISTING, format_option, include_option, quiet_option
 from ifgen.config.settings import Settings, settle
-from ifgen.config.silence import Policy, by_comments
+from ifgen.config.suppressions import Policy, by_comments
 from ifgen.diagnostics import Diagnostic, Source
 
 if TYPE_CHECKING:
@@ -81,7 +81,7 @@ def _compared(settings: Settings, against: str, category: str | None, format_: s
     base = settings.file.parent if settings.file is not None else Path.cwd()
     new = reference.current(settings.paths, settings.include)
     old = reference.earlier(against, settings.paths, settings.include, base, new)
-    chosen = Category(category or settings.breaking)
+    chosen = Category(category or settings.config.breaking)
     found = [*new.mistakes, *_broken(old, new, chosen, settings.policy)]
     found += (replace(mistake, severity="warning") for mistake in old.mistakes)
     counts = ((len(new.interfaces), "interface"), (len(new.nodes or ()), "node"))

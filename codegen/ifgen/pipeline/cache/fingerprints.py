@@ -6,33 +6,43 @@ import hashlib
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from copy import copy
+from dataclasses import replace
 from itertools import chain
 from pathlib import Path
 
 from ifgen import resources
-from ifgen.config import ros_distro
 from ifgen.config.customization import Customization
+from ifgen.config.suppressions import is_old
 from ifgen.definition import dependencies, derive
 from ifgen.definition.interfaces import Action, Interface, Message, Registry
 from ifgen.definition.references import references
 from ifgen.diagnostics import Source
 from ifgen.pipeline.cache.record import PackageRecord, sources_of
-from ifgen.pipeline.values import Request, ResolvedInput
-from ifgen.reading.packages import PackageFiles
+from ifgen.pipeline.values import Request, ResolvedInput, Target
+from ifgen.reading.manifest import Manifest
+from ifgen.reading.packages import NODE_FOLDER, PackageFiles
 from ifgen.reading.search_path import SearchPath
 from ifgen.reading.storage import MAX_GENERATED, read_limited
+from ifgen.writing.write import ROOT
 
 
 class Fingerprints:
-    """Digests of the sources of packages; each file is read once.
+    """Digests of what a run reads; each file is read once.
 
-    What is the same for all packages, and what packages say about themselves, is read at once.
+    What is the same for all packages, what packages say about themselves, and the users' modules are read at
+    once.
     """
 
     def __init__(self, request: Request) -> None:
+        self.request = _of_request(request)
         self._search = request.search
-        self._generator = of_generator(resources.templates()) + _of_customization(request.custom)
+        self._output = request.output
         self._packages = {package.name: _of_package(package, self._search) for package in request.packages}
+        self._users = _of_users_modules(request.packages, self._output)
+        self._generator = of_generator(resources.templates()) + _of_customization(request.custom)
+        self._ours: set[str] = set()  # only pip needs to know what is generated beside a package
+        if request.custom.distributions is not None:
+            self._ours = self._packages.keys() | request.previous.keys() - {ROOT}
         self._files: dict[str, bytes] = {}  # by the names of their types, or by their paths
         self._modules: dict[str, str] = {}
 
@@ -44,20 +54,35 @@ class Fingerprints:
         same = copy(self)
         same._files = {i.type_name: _of_source(i.source) for i in parsed if i.source}
         same._files |= {str(source.path.resolve()): _of_source(source) for source in (*xmls, *documents)}
+        # The users' modules as they were when they were compared, and those that were written since.
+        same._users = _of_users_modules(resolved.packages, self._output) | self._users
+        same._ours = (
+            self._ours.union(target.name for target in resolved.targets) if self._ours else self._ours
+        )
         return same
 
-    def of_sources(self, name: str, sources: PackageRecord, ours: Iterable[str]) -> str:
-        """The digest of everything that the files of a package depend on.
+    def match(self, name: str, recorded: PackageRecord) -> bool:
+        """Whether a package has the recorded interfaces and nodes, and is generated from the same sources."""
+        package = self._search.package(name)
+        if package is None:
+            return False
+        own = [f"{name}/{file.folder}/{file.name}" for file in package.files]
+        own += (f"{name}/{NODE_FOLDER}/{node.name}" for node in package.nodes)
+        # One may be there twice: an .idl file beside a .msg file.
+        return sorted(own) == sorted(recorded.own) and self._of_sources(name, recorded) == recorded.inputs
 
-        `ours` are all packages in the output, if that matters.
-        """
-        hasher = hashlib.sha256(self._generator + self._packages.get(name, b""))
-        hasher.update(repr(sorted(ours)).encode())
-        types = ((type_name, self._of_type(type_name)) for type_name in (*sources.own, *sources.needed))
-        documents = ((path, self._of_document(path)) for path in sources.documents)
-        for source, digest in (*types, *documents):
-            hasher.update(source.encode(errors="surrogateescape"))
-            hasher.update(digest)
+    def records(self, resolved: ResolvedInput) -> dict[str, PackageRecord]:
+        """The sources of the packages of a run."""
+        needs, modules = Needs(resolved.registries), self.of_modules(resolved.registry)
+        return {target.name: self._record(target, needs, modules) for target in resolved.targets}
+
+    def of_run(self, records: Iterable[PackageRecord], root: Mapping[str, Manifest]) -> str:
+        """The digest of the sources of packages, of the users' modules, and of what is made once in a run."""
+        hasher = hashlib.sha256("\n".join(recorded.inputs for recorded in records).encode())
+        for path, digest in sorted(self._users.items()):
+            hasher.update(path.encode(errors="surrogateescape") + digest)
+        for found in root.values():
+            hasher.update(found.digest.encode())
         return hasher.hexdigest()
 
     def of_modules(self, registry: Registry) -> Mapping[str, str]:
@@ -76,6 +101,28 @@ class Fingerprints:
                     hasher.update(texts[needed])
                 self._modules[name] = hasher.hexdigest()[:32]
         return self._modules
+
+    def _record(self, target: Target, needs: Needs, modules: Mapping[str, str]) -> PackageRecord:
+        interfaces = [i.type_name for i in target.interfaces.interfaces] if target.interfaces else []
+        endpoints = (
+            [e.type_name for node in target.nodes.nodes for e in node.endpoints] if target.nodes else []
+        )
+        own = [*interfaces, *target.described]
+        needed = sorted(needs.by([*interfaces, *endpoints]).difference(own))
+        documents = [str(path.resolve()) for path in target.documents]
+        sources = PackageRecord(own, needed, documents, {name: modules[name] for name in interfaces})
+        return replace(sources, inputs=self._of_sources(target.name, sources))
+
+    def _of_sources(self, name: str, sources: PackageRecord) -> str:
+        """The digest of everything that the files of a package depend on."""
+        hasher = hashlib.sha256(self._generator + self._packages.get(name, b""))
+        hasher.update(repr(sorted(self._ours)).encode())
+        types = ((type_name, self._of_type(type_name)) for type_name in (*sources.own, *sources.needed))
+        documents = ((path, self._of_document(path)) for path in sources.documents)
+        for source, digest in (*types, *documents):
+            hasher.update(source.encode(errors="surrogateescape"))
+            hasher.update(digest)
+        return hasher.hexdigest()
 
     def _of_type(self, name: str) -> bytes:
         """The digest of the file that a type name stands for today; of nothing if there is none."""
@@ -141,9 +188,21 @@ def of_file(path: Path) -> bytes:
         return b""
 
 
-def of_files(paths: Iterable[Path]) -> dict[str, bytes]:
-    """The digests of files, by their paths."""
-    return {str(path): of_file(path) for path in paths}
+def _of_request(request: Request) -> str:
+    """The digest of what is asked for, and of the working folder: messages name paths relative to that.
+
+    A condition is part of the request: what did not meet another one may not meet this one.
+    """
+    names = [package.name for package in request.packages]
+    condition = request.condition.key if request.condition else ""
+    text = repr((names, request.with_deps, str(Path().absolute()), condition))
+    return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()[:32]
+
+
+def _of_users_modules(packages: Iterable[PackageFiles], output: Path) -> dict[str, bytes]:
+    """The digests of the users' modules of nodes, which are compared with the descriptions, by path."""
+    folders = (output / package.name / package.name for package in packages if package.nodes)
+    return {str(path): of_file(path) for folder in folders for path in folder.rglob("[!_]*.py")}
 
 
 def _of_text(data: bytes) -> bytes:
@@ -157,10 +216,16 @@ def _of_source(source: Source) -> bytes:
 
 def _of_customization(custom: Customization) -> bytes:
     """The digest of all the user's additions, empty if there are none."""
-    is_old = ros_distro.is_old(custom.ros_distro)
-    if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_old:
+    is_for_old = is_old(custom.ros_distro)
+    if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_for_old:
         return b""
-    values = (custom.outputs, custom.tests, custom.distributions, sorted(custom.requirements.items()), is_old)
+    values = (
+        custom.outputs,
+        custom.tests,
+        custom.distributions,
+        sorted(custom.requirements.items()),
+        is_for_old,
+    )
     hasher = hashlib.sha256(repr(values).encode(errors="surrogateescape"))
     paths = [path for folder in custom.folders for _, path in _files_below(folder)]
     for path in (*paths, *([custom.filters] if custom.filters else ())):

@@ -49,11 +49,6 @@ class BuildRecord:
     packages: Mapping[str, PackageRecord] = field(default_factory=dict[str, PackageRecord])
     runs: Mapping[str, _Json] = field(default_factory=dict[str, _Json])
 
-    def needed_by(self, package: str) -> set[str]:
-        """The packages that one needs, as far as is recorded."""
-        recorded = self.packages.get(package)
-        return {type_name.partition("/")[0] for type_name in recorded.needed} if recorded else set()
-
     def diagnostics_of(self, request: str, inputs: str) -> tuple[Diagnostic, ...] | None:
         """The diagnostics of such a run, if there was one, and the files that they show are unchanged."""
         with suppress(KeyError, TypeError, ValueError, IndexError, AttributeError):
@@ -101,7 +96,9 @@ def _path(output: Path) -> Path:
 
 def _package(values: Sequence[_Json]) -> PackageRecord:
     own, needed, documents, modules, inputs, manifest = values
-    return PackageRecord(list(own), list(needed), list(documents), dict(modules), inputs, manifest)
+    return PackageRecord(
+        [*map(str, own)], [*map(str, needed)], list(documents), dict(modules), inputs, manifest
+    )
 
 
 def _to_json(diagnostics: Sequence[Diagnostic]) -> _Json:

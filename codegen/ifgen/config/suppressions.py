@@ -1,4 +1,4 @@
-"""The choice of warnings: comments and `[tool.ifgen]` silence some, `--strict` makes errors of the rest."""
+"""The choice of warnings: comments and `[tool.ifgen]` suppress some, `--strict` makes errors of the rest."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Label, Source, Span
 
@@ -16,6 +16,11 @@ _MARK: Final = "ifgen:"
 _COMMENT: Final = re.compile(r"[ \t]*(?:#+|//+|/\*+|<!--)[ \t]*ifgen:[ \t]*ignore\b(?:[ \t]*\[([^\]\n]*)\])?")
 _NO_CODE: Final = re.compile(r"""\s*(?:\#(?!include[ \t]*["<])|//|/\*[^\n]*\*/\s*$|<!--|$)""")
 _RULE: Final = re.compile(r"[^\s,]+")
+
+RosDistro = Literal["humble", "iron", "jazzy", "kilted", "lyrical", "rolling"]
+
+_OPTIONAL: Final = "optional-field"
+_WITHOUT_OPTIONAL: Final = frozenset(("humble", "iron", "jazzy", "kilted"))
 
 
 @dataclass(frozen=True)
@@ -79,6 +84,31 @@ def without_directive(comment: str) -> str:
     """The comment of a line without `# ifgen: ignore[...]` and what follows it: that is no documentation."""
     found = _COMMENT.search(comment) if _MARK in comment else None
     return comment[: found.start()].rstrip() if found else comment
+
+
+def is_old(ros_distro: str | None) -> bool:
+    """Whether rosidl of a distribution refuses what newer ones read. One that is unknown counts as new."""
+    return ros_distro in _WITHOUT_OPTIONAL
+
+
+def judged(found: Iterable[Diagnostic], ros_distro: str | None) -> list[Diagnostic]:
+    """The findings, where those are errors that the rosidl of a distribution makes errors of."""
+    if not is_old(ros_distro):
+        return list(found)
+    name = str(ros_distro).capitalize()
+    message = f"ROS 2 {name} does not know `@optional`"
+    advice = (
+        'remove it: it came with Lyrical. If that is your ROS 2, set `ros_distro = "lyrical"` in [tool.ifgen]'
+    )
+    return [
+        replace(d, message=message, help=advice, severity="error") if d.rule == _OPTIONAL else d
+        for d in found
+    ]
+
+
+def refused(found: Iterable[Diagnostic], ros_distro: str | None) -> list[Diagnostic]:
+    """Those of the warnings that are errors for a distribution."""
+    return [d for d in judged(found, ros_distro) if d.severity == "error"]
 
 
 @dataclass
