@@ -30,6 +30,47 @@ class GraphOptions(SessionOptions):
     use_sim_time: bool = False
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListOptions(GraphOptions):
+    """The options of a verb `list`."""
+
+    include_hidden: bool = False
+    show_types: bool = False
+    count: bool = False
+    verbose: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FindOptions(GraphOptions):
+    """The options of a verb `find`."""
+
+    type_name: str
+    include_hidden: bool = False
+    count: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NameOptions(GraphOptions):
+    """The options of the verbs `type` and `info`, which are about one topic, service or action."""
+
+    name: str
+    show_types: bool = False
+    count: bool = False
+    verbose: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CallOptions(SessionOptions):
+    """The options of `service call` and `action send_goal`; a call is repeated at a `rate` [Hz]."""
+
+    name: str
+    type_name: str
+    values: str | None = None
+    from_stdin: bool = False
+    rate: float | None = None
+    feedback: bool = False
+
+
 def takes(cls: type[_Options]) -> Callable[[Callable[[_Options], _Result]], Callable[..., _Result]]:
     """Let a command take its options as one dataclass, whose fields have the names of click's parameters."""
 

@@ -121,11 +121,12 @@ def proto(type_: str, no_quotes: bool, transport: Any, as_json: bool) -> None:
     That is a message, the request of a service, or the goal of an action.
     """
     from ifgen_tools.interface.proto import prototype
-    from ifgen_tools.texts.formats import Style, as_yaml, plain
+    from ifgen_tools.texts.formats import as_yaml, plain
+    from ifgen_tools.texts.style import WHOLE
 
     message = prototype(type_, transport)
     if as_json:
-        _print_json(plain(message, Style()))
+        _print_json(plain(message, WHOLE))
         return
     text = as_yaml(message)
     print(text if no_quotes else f'"{text}"')

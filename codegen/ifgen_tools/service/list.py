@@ -1,4 +1,4 @@
-"""`ifgen service list`, `type`, `find` and `info`: what the graph tells."""
+"""`ifgen service list`, `type`, `find` and `info`: the services in the graph."""
 
 from __future__ import annotations
 
@@ -9,87 +9,53 @@ from typing import TYPE_CHECKING, Any
 from ifgen_tools.named import Named, named, of_type, pick, print_named
 from ifgen_tools.names import full_name, is_hidden
 from ifgen_tools.session import open_session
+from ifgen_tools.verbs import FindOptions, ListOptions, NameOptions
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-    from ifgen_tools.session import TransportChoice
 
-
-def list_services(
-    *,
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    use_sim_time: bool = False,
-    include_hidden: bool = False,
-    show_types: bool = False,
-    count: bool = False,
-    as_json: bool = False,
-) -> None:
+def list_services(chosen: ListOptions) -> None:
     """Print the services that there are now."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        session.discover(spin_time)
-        found = services(session.node, include_hidden)
-    print_named(found, show_types=show_types, count=count, as_json=as_json)
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        session.discover(chosen.spin_time)
+        found = services(session.node, chosen.include_hidden)
+    print_named(found, show_types=chosen.show_types, count=chosen.count, as_json=chosen.as_json)
 
 
-def print_type(
-    *,
-    name: str,
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    use_sim_time: bool = False,
-    as_json: bool = False,
-) -> None:
+def print_type(chosen: NameOptions) -> None:
     """Print the type of a service, or the types. Raises ToolError if there is no such service."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        session.discover(spin_time)
-        found = pick_service(session.node, name)
-    print(json.dumps(found.types) if as_json else "\n".join(found.types))
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        session.discover(chosen.spin_time)
+        found = pick_service(session.node, chosen.name)
+    print(json.dumps(found.types) if chosen.as_json else "\n".join(found.types))
 
 
-def find_services(
-    *,
-    type_name: str,
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    use_sim_time: bool = False,
-    include_hidden: bool = False,
-    count: bool = False,
-    as_json: bool = False,
-) -> None:
+def find_services(chosen: FindOptions) -> None:
     """Print the services of a type: nothing if there is none."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        session.discover(spin_time)
-        found = services(session.node, include_hidden)
-    print_named(of_type(found, type_name, "srv"), count=count, as_json=as_json)
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        session.discover(chosen.spin_time)
+        found = services(session.node, chosen.include_hidden)
+    print_named(of_type(found, chosen.type_name, "srv"), count=chosen.count, as_json=chosen.as_json)
 
 
-def service_info(
-    *,
-    name: str,
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    use_sim_time: bool = False,
-    verbose: bool = False,
-    as_json: bool = False,
-) -> None:
+def service_info(chosen: NameOptions) -> None:
     """Print the type and the numbers of clients and servers. Raises ToolError if there is no such service."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        session.discover(spin_time)
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        session.discover(chosen.spin_time)
         node = session.node
-        found = pick_service(node, name)
+        found = pick_service(node, chosen.name)
         clients, servers = node.count_clients(found.name), node.count_services(found.name)
         calling = _nodes_with(found.name, node, node.get_client_names_and_types_by_node)
         serving = _nodes_with(found.name, node, node.get_service_names_and_types_by_node)
-    if as_json:
+    if chosen.as_json:
         counts = {"clients": clients, "servers": servers, "client_nodes": calling, "server_nodes": serving}
         print(json.dumps({"name": found.name, "types": found.types, **counts}, indent=2))
         return
     print(f"Type: {found.types[0] if len(found.types) == 1 else found.types}")
     for what, number, nodes in (("Clients", clients, calling), ("Services", servers, serving)):
         print(f"{what} count: {number}")
-        for each in nodes if verbose else []:
+        for each in nodes if chosen.verbose else []:
             print(f"    {each}")
 
 

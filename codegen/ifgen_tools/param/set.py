@@ -1,11 +1,10 @@
-"""`ifgen param get`, `set` and `delete`."""
+"""`ifgen param set`, `delete` and `load`."""
 
 from __future__ import annotations
 
 import json
 import sys
-from array import array
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,131 +12,110 @@ from ifgen_runtime import parameter_yaml
 from ifgen_runtime.parameter_scalars import Value
 
 from ifgen_tools.errors import ToolError
-from ifgen_tools.nodes import find_node
-from ifgen_tools.param.remote import TYPES, RemoteParameters, SetResult
-from ifgen_tools.session import TransportChoice, open_session
+from ifgen_tools.param.client import BYTES, FIELDS, TYPES, RemoteParameters, SetResult
+from ifgen_tools.param.options import GetOptions, LoadOptions, SetOptions
+from ifgen_tools.param.show import opened
 from ifgen_tools.texts.set_fields import shown, text_problem
 
 if TYPE_CHECKING:
-    from rcl_interfaces.msg import Parameter, ParameterValue
+    from rcl_interfaces.msg import Parameter
 
 # Late imports: rclpy is found once the transport has been chosen.
 
-_FIELDS: Final = {
-    1: "bool_value",
-    2: "integer_value",
-    3: "double_value",
-    4: "string_value",
-    5: "byte_array_value",
-    6: "bool_array_value",
-    7: "integer_array_value",
-    8: "double_array_value",
-    9: "string_array_value",
-}
 
-
-def value_of(message: ParameterValue) -> Value | bytes:
-    """The value in a rcl_interfaces/msg/ParameterValue; None if it is not set."""
-    if message.type not in _FIELDS:
-        return None
-    value: Any = getattr(message, _FIELDS[message.type])
-    if message.type == _BYTES:
-        return b"".join(value)
-    return list(value) if message.type > _BYTES else value
-
-
-def json_value(message: ParameterValue) -> Any:
-    """The value as JSON has it: bytes are a list of int."""
-    value = value_of(message)
-    return list(value) if isinstance(value, bytes) else value
-
-
-def get_parameter(
-    *,
-    node: str,
-    name: str,
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    include_hidden: bool = True,
-    hide_type: bool = False,
-    patience: float | None = None,
-    as_json: bool = False,
-    use_sim_time: bool = False,
-) -> int:
-    """Print a value, after the name of its type."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        remote = RemoteParameters(session, find_node(session, node, spin_time), patience)
-        found = remote.values([name])
-        if name not in found:
-            raise remote.missing(name)
-    message = found[name]
-    if as_json:
-        parts = {"node": remote.node, "name": name, "type": TYPES[message.type], "value": json_value(message)}
-        print(json.dumps(parts))
-    elif message.type not in _FIELDS:
-        print("None" if hide_type else "Parameter not set.")
-    else:
-        print(_text(message) if hide_type else f"{_label(message.type)} {_text(message)}")
-    return 0
-
-
-def set_parameters(
-    *,
-    node: str,
-    pairs: Sequence[tuple[str, str]],
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    include_hidden: bool = True,
-    atomic: bool = False,
-    patience: float | None = None,
-    as_json: bool = False,
-    use_sim_time: bool = False,
-) -> int:
+def set_parameters(chosen: SetOptions) -> int:
     """Set parameters to values, which are YAML. Returns 1 if the node has refused one."""
+    pairs = zip(chosen.pairs[::2], chosen.pairs[1::2], strict=True)
     values = [(name, _read(name, text)) for name, text in pairs]
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        remote = RemoteParameters(session, find_node(session, node, spin_time), patience)
+    with opened(chosen) as remote:
         # Only these depend on the declared type.
         unclear = [name for name, value in values if value is None or isinstance(value, list)]
         found = remote.known_descriptors(unclear) if unclear else {}
         types = {name: descriptor.type for name, descriptor in found.items()}
-        parameters = [parameter_of(name, value, types.get(name, 0)) for name, value in values]
-        results = remote.set_atomically(parameters) if atomic else remote.set(parameters)
+        parameters = [_parameter(name, value, types.get(name, 0)) for name, value in values]
+        results = remote.set_atomically(parameters) if chosen.atomic else remote.set(parameters)
         advice = [] if all(each.successful for each in results) else _advice(remote, parameters, results)
-    if atomic and not as_json:
+    if chosen.atomic and not chosen.as_json:
         _print(results[0], "Set parameters atomically successful", "Setting parameters atomically failed")
-    elif not as_json:
+    elif not chosen.as_json:
         for result in results:
             prefix = f"{result.name}: " if len(results) > 1 else ""
             _print(result, f"{prefix}Set parameter successful", f"{prefix}Setting parameter failed")
-    return finish(results, as_json, advice)
+    return _finish(results, chosen.as_json, advice)
 
 
-def delete_parameter(
-    *,
-    node: str,
-    name: str,
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    include_hidden: bool = True,
-    patience: float | None = None,
-    as_json: bool = False,
-    use_sim_time: bool = False,
-) -> int:
+def delete_parameter(chosen: GetOptions) -> int:
     """Set a parameter to no value, which deletes it. Returns 1 if the node has refused that."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
+    with opened(chosen) as remote:
         from rcl_interfaces.msg import Parameter
 
-        remote = RemoteParameters(session, find_node(session, node, spin_time), patience)
-        if name not in remote.names():
-            raise remote.missing(name)
-        results = remote.set([Parameter(name=name)])
-    if not as_json:
+        if chosen.name not in remote.names():
+            raise remote.missing(chosen.name)
+        results = remote.set([Parameter(name=chosen.name)])
+    if not chosen.as_json:
         _print(results[0], "Deleted parameter successfully", "Deleting parameter failed")
-    return finish(results, as_json)
+    return _finish(results, chosen.as_json)
 
 
-def finish(results: Sequence[SetResult], as_json: bool, advice: Sequence[str] = ()) -> int:
+def load_parameters(chosen: LoadOptions) -> int:
+    """Set the parameters that a file has for a node. Returns 1 if the node has refused one."""
+    sections = _sections(chosen.file)
+    with opened(chosen) as remote:
+        results = _load(remote, _selected(sections, chosen, remote.node))
+    if not chosen.as_json:
+        for result in results:
+            name = f"Set parameter {result.name}"
+            _print(result, f"{name} successful", f"{name} failed")
+    return _finish(results, chosen.as_json)
+
+
+def _load(remote: RemoteParameters, values: Mapping[str, Value]) -> list[SetResult]:
+    """Set parameters, but for read-only ones that have their values already, as after a `dump`."""
+    found = remote.known_descriptors(list(values))
+    fixed = remote.values([name for name, descriptor in found.items() if descriptor.read_only])
+    types = {name: descriptor.type for name, descriptor in found.items()}
+    parameters = [_parameter(name, value, types.get(name, 0)) for name, value in values.items()]
+    # Compared as texts: a NaN is not equal to itself.
+    kept = [each.name for each in parameters if repr(fixed.get(each.name)) == repr(each.value)]
+    results = remote.set([each for each in parameters if each.name not in kept])
+    return [*(SetResult(name, True, "it is read-only and has this value") for name in kept), *results]
+
+
+def _sections(file: str) -> dict[str, dict[str, Value]]:
+    """The parameters in a file by the full names of nodes, or by patterns. Raises ToolError."""
+    found: dict[str, parameter_yaml.Entry] = {}
+    try:
+        parameter_yaml.read_file(file, lambda node: found.setdefault(node, {}), everything=True)
+    except parameter_yaml.ParameterYamlError as error:
+        is_about_form = error.reason == str(error).strip()
+        raise ToolError(f"{file}: {error.reason}", _FORM if is_about_form else "") from None
+    if not found:
+        raise ToolError(f"{file} is no parameter file", _FORM)
+    sections: dict[str, dict[str, Value]] = {}
+    for node, entry in found.items():
+        section = sections.setdefault(f"/{node.strip('/')}", {})
+        section.update({name: variant.value() for name, variant in entry.items()})
+    return sections
+
+
+_FORM: Final = f"it begins with the name of a node, and {parameter_yaml.PARAMETERS_KEY!r} below it"
+
+
+def _selected(sections: dict[str, dict[str, Value]], chosen: LoadOptions, node: str) -> dict[str, Value]:
+    """The parameters of a node; its own come after those of the wildcard, which they replace."""
+    wanted = [_WILDCARD] if not chosen.no_use_wildcard and _WILDCARD in sections else []
+    wanted += [node] if node in sections else []
+    if not wanted:
+        raise ToolError(
+            f"{chosen.file} has no parameters for {node!r}", f"it has parameters for: {', '.join(sections)}"
+        )
+    return {name: value for key in wanted for name, value in sections[key].items()}
+
+
+_WILDCARD: Final = "/**"
+
+
+def _finish(results: Sequence[SetResult], as_json: bool, advice: Sequence[str] = ()) -> int:
     """Print results as JSON if that is wanted, and advice; returns the exit code."""
     if as_json:
         print(json.dumps([asdict(each) for each in results], indent=2))
@@ -150,19 +128,6 @@ def _print(result: SetResult, success: str, failure: str) -> None:
     text = success if result.successful else failure
     file = sys.stdout if result.successful else sys.stderr
     print(f"{text}: {result.reason}" if result.reason else text, file=file)
-
-
-def _label(type_: int) -> str:
-    """The words that ROS writes before a value: `Integer value is:`, `Double values are:`."""
-    kind, *is_array = TYPES[type_].capitalize().split()
-    return f"{kind} values are:" if is_array else f"{kind} value is:"
-
-
-def _text(message: ParameterValue) -> str:
-    """A value as `ros2 param get` prints it, which is as Python does."""
-    value: Any = getattr(message, _FIELDS[message.type])
-    # Our messages have arrays where those of rosidl have arrays, and both print these alike.
-    return str(value if isinstance(value, array) else list(value) if message.type > 4 else value)
 
 
 def _read(name: str, text: str) -> Value:
@@ -178,7 +143,7 @@ def _read(name: str, text: str) -> Value:
 _QUOTES: Final = "put a text in quotes of YAML within those of the shell, such as '\"a: b\"'"
 
 
-def parameter_of(name: str, value: Value, declared: int) -> Parameter:
+def _parameter(name: str, value: Value, declared: int) -> Parameter:
     """The message of a parameter that has a value as rcl reads it; None is an empty list.
 
     The type that the node has declared, or 0, says what an empty list and a list of bytes are. Raises
@@ -190,21 +155,20 @@ def parameter_of(name: str, value: Value, declared: int) -> Parameter:
     converted: Any = [] if value is None else value
     if isinstance(value, list):
         type_ = next(array for array, kind in _ELEMENTS.items() if isinstance(value[0], kind))
-        if declared == _BYTES and type_ == _INTEGERS:
+        if declared == BYTES and type_ == _INTEGERS:
             if wrong := [each for each in value if each not in range(256)]:
                 raise ToolError(f"the value {wrong[0]} in {name!r} fits no byte", "bytes are 0 to 255")
-            type_, converted = _BYTES, [bytes([each]) for each in value]
+            type_, converted = BYTES, [bytes([each]) for each in value]
     if problem := text_problem(name):
         raise ToolError(f"{name!r} can be no name of a parameter: {problem}")
     for text in converted if isinstance(converted, list) else [converted]:
         if isinstance(text, str) and (problem := text_problem(text)):
             raise ToolError(f"the value of {name!r} fits no parameter: {problem}")
     message = ParameterValue(type=type_ or _EMPTY)
-    setattr(message, _FIELDS[message.type], converted)
+    setattr(message, FIELDS[message.type], converted)
     return Parameter(name=name, value=message)
 
 
-_BYTES: Final = 5
 _EMPTY: Final = 6  # what rclpy makes of an empty list
 _INTEGERS: Final = 7
 _TYPES_OF: Final[dict[type, int]] = {bool: 1, int: 2, float: 3, str: 4}

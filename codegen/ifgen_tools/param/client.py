@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
+
+from ifgen_runtime.parameter_scalars import Value
 
 from ifgen_tools.errors import ToolError, did_you_mean
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter, ParameterDescriptor, ParameterValue, SetParametersResult
+    from rclpy.parameter_client import AsyncParameterClient
     from rclpy.task import Future
 
     from ifgen_tools.session import Session
@@ -30,6 +34,21 @@ TYPES: Final = {
 }
 """The names of rcl_interfaces/msg/ParameterType."""
 
+FIELDS: Final = {
+    1: "bool_value",
+    2: "integer_value",
+    3: "double_value",
+    4: "string_value",
+    5: "byte_array_value",
+    6: "bool_array_value",
+    7: "integer_array_value",
+    8: "double_array_value",
+    9: "string_array_value",
+}
+"""The fields of rcl_interfaces/msg/ParameterValue by its type."""
+
+BYTES: Final = 5
+
 _SERVICES_TAKE: Final = 5.0
 """Seconds that the services of a node may take to be discovered, as in ROS."""
 
@@ -45,25 +64,58 @@ class SetResult:
     reason: str
 
 
-class RemoteParameters:
-    """The parameters of a node; `node` is its full name.
+def value_of(message: ParameterValue) -> Value | bytes:
+    """The value in a rcl_interfaces/msg/ParameterValue; None if it is not set."""
+    if message.type not in FIELDS:
+        return None
+    value: Any = getattr(message, FIELDS[message.type])
+    if message.type == BYTES:
+        return b"".join(value)
+    return list(value) if message.type > BYTES else value
 
-    `patience` is the time [s] that an answer may take; None is for ever. Each method raises ToolError if none
-    comes.
+
+def json_value(message: ParameterValue) -> Any:
+    """The value as JSON has it: bytes are a list of int."""
+    value = value_of(message)
+    return list(value) if isinstance(value, bytes) else value
+
+
+@contextmanager
+def parameters_of(
+    session: Session, node: str, patience: float | None = None, services_take: float | None = None
+) -> Generator[RemoteParameters]:
+    """The parameters of the node with this full name, until the block ends.
+
+    `patience` is the time [s] that an answer may take; None is for ever. The services of the node may take
+    `services_take` [s] to be discovered. Raises ToolError if they are not there.
     """
+    from rclpy.parameter_client import AsyncParameterClient
 
-    def __init__(self, session: Session, node: str, patience: float | None = None) -> None:
-        from rclpy.parameter_client import AsyncParameterClient
-
-        self.node = node
-        self._session = session
-        self._patience = patience
-        self._client = AsyncParameterClient(session.node, node)
-        if not session.wait_for(self._client.services_are_ready, _SERVICES_TAKE):
+    earlier = set(session.node.clients)
+    client = AsyncParameterClient(session.node, node)
+    try:
+        limit = _SERVICES_TAKE if services_take is None else services_take
+        if not session.wait_for(client.services_are_ready, limit):
             raise ToolError(
                 f"the node {node!r} has no services for its parameters",
                 "it was made with start_parameter_services=False, or it has just ended",
             )
+        yield RemoteParameters(session, node, client, patience)
+    finally:
+        for each in set(session.node.clients) - earlier:  # rclpy's client has no `destroy`
+            session.node.destroy_client(each)
+
+
+class RemoteParameters:
+    """The parameters of a node; `node` is its full name. Each method raises ToolError without an answer."""
+
+    def __init__(
+        self, session: Session, node: str, client: AsyncParameterClient, patience: float | None
+    ) -> None:
+        self.node = node
+        self._session = session
+        self._client = client
+        self._patience = patience
 
     def names(self, prefixes: Sequence[str] = ()) -> list[str]:
         """The names of its parameters, or of those below the prefixes, sorted."""
@@ -94,6 +146,12 @@ class RemoteParameters:
     def types(self, names: Sequence[str]) -> dict[str, int]:
         """The declared types of parameters, of those without a value, too; empty if one is not declared."""
         return {descriptor.name: descriptor.type for descriptor in self.descriptors(names)}
+
+    def all(self) -> list[tuple[ParameterDescriptor, ParameterValue | None]]:
+        """The descriptors and values of all parameters, sorted by name; None for one without a value."""
+        names = self.names()
+        values = self.values(names)
+        return [(each, values.get(each.name)) for each in self.descriptors(names)]
 
     def missing(self, name: str) -> ToolError:
         """The error for a parameter that has no value, or is not there."""
