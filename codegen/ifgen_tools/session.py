@@ -136,9 +136,9 @@ def open_session(
     chosen = activate(transport)
     if chosen == "rclpy":
         _hush_half_made_tasks()
-    from ifgen.writing.interruption import held
+    from ifgen.signals import delay_interrupt
 
-    with held(""):  # Ctrl-C in the import of a module in C may be lost
+    with delay_interrupt(""):  # Ctrl-C in the import of a module in C may be lost
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
         from rclpy.parameter import Parameter
