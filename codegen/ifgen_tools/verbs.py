@@ -1,11 +1,13 @@
-"""The options of verbs as typed values, which click would pass as loose keywords."""
+"""The options of verbs as typed values, and options with several values after them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
-from typing import Literal, TypeAlias, TypeVar
+from typing import Any, Literal, TypeAlias, TypeVar
+
+import click
 
 TransportChoice: TypeAlias = Literal["local", "rclpy", "auto"]
 """The values of `--transport`."""
@@ -82,3 +84,38 @@ def takes(cls: type[_Options]) -> Callable[[Callable[[_Options], _Result]], Call
         return run
 
     return decorate
+
+
+class ManyOption(click.Option):
+    """An option that takes all values up to the next option, as in ROS: `--topics /imu /scan`."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **{**kwargs, "multiple": True})
+
+
+class ManyCommand(click.Command):
+    """A command whose `ManyOption`s may have several values."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Repeat the name of an option before each of its values, which click understands."""
+        names = {name for param in self.params if isinstance(param, ManyOption) for name in param.opts}
+        spread: list[str] = []
+        current = ""
+        has_value = True
+        for position, argument in enumerate(args):
+            if argument == "--":
+                spread += args[position:]
+                break
+            if argument in names:
+                current, has_value = argument, False
+            elif argument.startswith("-") and argument != "-":
+                current = ""
+                spread.append(argument)
+            elif current:
+                spread += [current, argument]
+                has_value = True
+            else:
+                spread.append(argument)
+            if not has_value and (position + 1 == len(args) or args[position + 1].startswith("-")):
+                raise click.UsageError(f"Option '{current}' requires at least one value.", ctx)
+        return super().parse_args(ctx, spread)

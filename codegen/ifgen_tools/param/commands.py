@@ -20,32 +20,16 @@ from ifgen_tools.param.options import (
     NodeOptions,
     SetOptions,
 )
-from ifgen_tools.verbs import takes
+from ifgen_tools.verbs import ManyCommand, ManyOption, takes
 
 # Late imports: each verb loads what it needs.
 
 _NUMBER: Final = re.compile(r"-\.?(\d|inf)")
-_PREFIXES: Final = "--param-prefixes"
 
 
 @click.group(cls=ToolGroup)
 def param() -> None:
     """Look at the parameters of running nodes, and set them."""
-
-
-class _ListCommand(click.Command):
-    """Lets `--param-prefixes` take all words after it up to the next option, as in ROS."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Write the option before each of its words, as click has it."""
-        words: list[str] = []
-        taking = False
-        for word in args:
-            if taking and not word.startswith("-") and words[-1] != _PREFIXES:
-                words.append(_PREFIXES)
-            taking = word == _PREFIXES or (taking and not word.startswith("-"))
-            words.append(word)
-        return super().parse_args(ctx, words)
 
 
 def _node_options(command: Command) -> Command:
@@ -85,11 +69,11 @@ def _patience_option(command: Command) -> Command:
     )(command)
 
 
-@param.command("list", cls=_ListCommand, epilog="Example: `ifgen param list /talker --param-type`")
+@param.command("list", cls=ManyCommand, epilog="Example: `ifgen param list /talker --param-type`")
 @click.argument("node", required=False, shell_complete=completion.nodes)
 @_node_options
 @click.option(
-    "--param-prefixes", multiple=True, metavar="PREFIX...", help="Only parameters below these prefixes."
+    "--param-prefixes", cls=ManyOption, metavar="PREFIX...", help="Only parameters below these prefixes."
 )
 @click.option("--param-type", "with_types", is_flag=True, help="The types as well.")
 @click.option("--filter", "pattern", metavar="REGEX", help="Only parameters whose names match.")

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from rclpy.event_handler import SubscriptionEventCallbacks, UnsupportedEventTypeError
 
-from ifgen_tools.bag.qos import adapted_request
-from ifgen_tools.bag.saying import say, warn
-from ifgen_tools.bag.selection import Selection
+from ifgen_tools.bag.files import say, warn
+from ifgen_tools.bag.options import RecordOptions
+from ifgen_tools.bag.qos import adapted_request, overrides
 from ifgen_tools.errors import ToolError
 from ifgen_tools.types import WireType, class_with_hash
 
@@ -48,19 +48,6 @@ Open: TypeAlias = "Callable[[str, type[Any], list[QoSProfile]], Write]"
 """Begins a topic, of messages of a class, with the QoS that its publishers offer."""
 
 
-@dataclass(frozen=True, slots=True)
-class RecordOptions:
-    """The topics to record, and how to record them."""
-
-    choice: Selection
-    overrides: dict[str, QoSProfile] = field(default_factory=dict)
-    include_unpublished: bool = False
-    ignore_leaves: bool = False
-    use_sim_time: bool = False
-    most_waiting: int = 2**30
-    """Bytes of messages that may wait for the disk. What comes then is left out, and counted."""
-
-
 @dataclass(slots=True)
 class _Source:
     """A subscription, where its messages go, and those that wait for the disk."""
@@ -84,11 +71,13 @@ class TopicRecorder:
 
     def __init__(self, node: Node, options: RecordOptions, open: Open) -> None:
         """Subscribe with a node."""
-        self.is_paused = False
+        self.is_paused = options.start_paused
         self.left: Counter[str] = Counter()
         """Messages that were received and are not recorded, by topic."""
         self._waiting_size = 0
         self._node, self._options, self._open = node, options, open
+        self._choice = options.selection()
+        self._overrides = overrides(options.qos_overrides)
         self._subscribed: dict[tuple[str, WireType], _Source] = {}
         self._asked: dict[tuple[str, WireType], Future[type[Any]]] = {}
         self._refused: dict[tuple[str, WireType], int] = {}
@@ -167,7 +156,7 @@ class TopicRecorder:
         if not received:  # there is no simulated time before the first /clock
             return
         size = self._waiting_size + len(data) + _AROUND
-        if self._waiting_size and size > self._options.most_waiting:
+        if self._waiting_size and size > self._options.max_waiting_size:
             self.left[source.topic] += 1
             return
         source.waiting.append((data, received, info["source_timestamp"] or received))
@@ -196,16 +185,16 @@ class TopicRecorder:
         infos = node.get_publishers_info_by_topic(topic)
         own = node.get_name()
         others = [info for info in node.get_subscriptions_info_by_topic(topic) if info.node_name != own]
-        if options.ignore_leaves and not others:
+        if options.ignore_leaf_topics and not others:
             return []
-        if not infos and options.include_unpublished:
+        if not infos and options.include_unpublished_topics:
             infos = others
         types = {
             WireType(
                 info.topic_type, text if (text := str(info.topic_type_hash)).startswith("RIHS01_") else None
             )
             for info in infos
-            if options.choice.takes(topic, info.topic_type)
+            if self._choice.takes(topic, info.topic_type)
         }
         return sorted(types, key=lambda wire: (wire.name, wire.hash or ""))
 
@@ -274,7 +263,7 @@ class TopicRecorder:
             return self._node.create_subscription(cls, topic, record, profile, raw=True)
 
     def _profile(self, topic: str, offers: list[QoSProfile]) -> QoSProfile:
-        if (override := self._options.overrides.get(topic)) is not None:
+        if (override := self._overrides.get(topic)) is not None:
             return override
         profile, mixed = adapted_request(offers, _DEPTH)
         for policy in mixed:

@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
 
+from ifgen_tools.bag.files import reading, say, warn
 from ifgen_tools.bag.keys import DOWN, RIGHT, SPACE, UP, keyboard
-from ifgen_tools.bag.playing.pacing import PlayClock
-from ifgen_tools.bag.playing.player import Player, Range, part
-from ifgen_tools.bag.playing.requests import Requester, requester, wait_for_answers, wait_for_servers
-from ifgen_tools.bag.reading import reading
-from ifgen_tools.bag.saying import say, warn
-from ifgen_tools.bag.selection import Selection, is_service_event
+from ifgen_tools.bag.options import PlayOptions, is_service_event
+from ifgen_tools.bag.player import PlayClock, Player, Range, part
+from ifgen_tools.bag.requests import Requester, requester, wait_for_answers, wait_for_servers
 from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
 
@@ -24,48 +21,21 @@ if TYPE_CHECKING:
 
 # Late imports: those of rclpy, once the transport has been chosen.
 
-_S = 10**9
-_FASTER = 1.1
+_S: Final = 10**9
+_NODE: Final = "rosbag2_player"
+_FASTER: Final = 1.1
 """The factor by which a key changes the rate."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlayOptions:
-    """The part to play, and how to play it; times are [s]."""
-
-    choice: Selection = field(default_factory=lambda: Selection(all_topics=True))
-    rate: float = 1.0
-    is_looping: bool = False
-    start_offset: float = 0.0
-    duration: float | None = None
-    until: int | None = None
-    """The time of the recording [ns] at which to end."""
-    delay: float = 0.0
-    is_paused: bool = False
-    clock_rate: float = 0.0
-    """How often to publish /clock [Hz]; 0 is never."""
-    clock_topics: frozenset[str] | None = None
-    """Topics before whose messages /clock is published; None for all of them."""
-    remaps: tuple[str, ...] = ()
-    qos_overrides: Path | None = None
-    has_keys: bool = True
-    unlimited: bool = False
-    """Whether files may unpack to much more than their size."""
-    request_events: int | None = None
-    """The kind of service events whose requests are sent; None publishes the events."""
-    all_acked: float = 0.0
-    """How long to wait at the end until everybody has everything; negative for ever, 0 not at all."""
-    node_name: str = "rosbag2_player"
-
-
-def play(path: Path, transport: Literal["local", "rclpy", "auto"], options: PlayOptions) -> int:
+def play(options: PlayOptions) -> int:
     """Play a bag until its end."""
-    arguments = ["--ros-args", *(part for rule in options.remaps for part in ("--remap", rule))]
-    with reading(path, unlimited=options.unlimited) as bag:
+    options.check()
+    arguments = ["--ros-args", *(part for rule in options.remap for part in ("--remap", rule))]
+    with reading(options.bag_path, unlimited=options.unlimited) as bag:
         if bag.start is None or bag.end is None:
-            raise ToolError(f"{path} has no messages", help="`ifgen bag info` shows what is in it")
+            raise ToolError(f"{bag.path} has no messages", help="`ifgen bag info` shows what is in it")
         span = _span(bag.start, bag.end, options)
-        with open_session(transport, arguments if options.remaps else (), options.node_name) as session:
+        with open_session(options.transport, arguments if options.remap else (), _NODE) as session:
             _Playing(bag, session, options, span).run()
     return 0
 
@@ -86,14 +56,15 @@ class _Playing:
     def __init__(self, bag: Bag, session: Session, options: PlayOptions, span: Range) -> None:
         from rclpy.clock import Clock, ClockType
 
-        from ifgen_tools.bag.playing.services import offer_services
         from ifgen_tools.bag.qos import overrides
+        from ifgen_tools.bag.services import offer_player_services
 
         self._bag, self._session, self._options = bag, session, options
+        self._choice = options.of_bag()
         self._overrides = overrides(options.qos_overrides)
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         clock = PlayClock(
-            lambda: steady.now().nanoseconds, span.start, options.rate, is_paused=options.is_paused
+            lambda: steady.now().nanoseconds, span.start, options.rate, is_paused=options.start_paused
         )
         self._player = Player(self._messages, self._publish, self._wait, clock, span, delay=options.delay)
         self._publishers: dict[tuple[str, Definition], Callable[[bytes], None]] = {}
@@ -102,7 +73,7 @@ class _Playing:
         self._topics = [
             topic for topic in bag.topics.values() if self._is_chosen(topic.name, topic.type_name)
         ]
-        self._clock_publisher = self._clock() if options.clock_rate or self._before is not None else None
+        self._clock_publisher = self._clock() if options.clock or self._before is not None else None
         if options.request_events is not None:
             session.discover()
         for channel in bag.channels:
@@ -110,15 +81,14 @@ class _Playing:
                 self._open(channel)
         if not self._publishers:
             raise ToolError(f"nothing of {bag.path} is played", help="`ifgen bag info` shows its topics")
-        offer_services(session.node, self._player)
+        offer_player_services(session.node, self._player)
 
     @property
     def _before(self) -> frozenset[str] | None:
         """The topics before whose messages /clock is published; None for no topic."""
-        chosen = self._options.clock_topics
-        if chosen is None:
-            return None
-        return chosen or frozenset(topic.name for topic in self._topics)
+        if self._options.clock_topics_all:
+            return frozenset(topic.name for topic in self._topics)
+        return frozenset(self._options.clock_topics) or None
 
     def run(self) -> None:
         """Play it."""
@@ -131,10 +101,10 @@ class _Playing:
             UP: ("10 % faster", lambda: self._change_rate(_FASTER)),
             DOWN: ("10 % slower", lambda: self._change_rate(1 / _FASTER)),
         }
-        with keyboard(actions, is_wanted=self._options.has_keys) as self._keyboard:
+        with keyboard(actions, is_wanted=not self._options.disable_keyboard_controls) as self._keyboard:
             if self._keyboard.legend:
                 say(self._keyboard.legend)
-            player.play(is_looping=self._options.is_looping)
+            player.play(is_looping=self._options.loop)
         wait_for_answers(self._session, self._requesters)
         self._wait_for_acknowledgements()
 
@@ -153,9 +123,11 @@ class _Playing:
         say(f"rate {self._player.clock.rate:.2f}")
 
     def _is_chosen(self, topic: str, type_name: str) -> bool:
-        if topic == "/clock" and (self._options.clock_rate or self._options.clock_topics is not None):
+        if topic == "/clock" and (
+            self._options.clock or self._options.clock_topics or self._options.clock_topics_all
+        ):
             return False  # two clocks would contradict each other
-        return self._options.choice.takes(topic, type_name)
+        return self._choice.takes(topic, type_name)
 
     def _open(self, channel: Channel) -> None:
         from ifgen_runtime.bag import BagError
@@ -193,12 +165,12 @@ class _Playing:
 
         node = self._session.node
         publisher = node.create_publisher(Clock, "/clock", QoSProfile(depth=1))
-        if self._options.clock_rate:
+        if self._options.clock:
             from rclpy.clock import Clock as RosClock
             from rclpy.clock import ClockType
 
             steady = RosClock(clock_type=ClockType.STEADY_TIME)
-            node.create_timer(1 / self._options.clock_rate, self._tell_time, clock=steady)
+            node.create_timer(1 / self._options.clock, self._tell_time, clock=steady)
         return publisher
 
     def _tell_time(self, now: int | None = None) -> None:
@@ -230,7 +202,7 @@ class _Playing:
     def _wait_for_acknowledgements(self) -> None:
         from rclpy.duration import Duration
 
-        timeout = self._options.all_acked
+        timeout = self._options.wait_for_all_acked / 1000
         if timeout:
             limit = Duration(nanoseconds=-1) if timeout < 0 else Duration(seconds=timeout)
             for publisher in self._all:
@@ -245,5 +217,4 @@ def _span(start: int, end: int, options: PlayOptions) -> Range:
             f"--start-offset {options.start_offset:g} is after the end: the bag is {length:.3f} s long",
             help="name an offset from its start in seconds",
         )
-    duration = None if options.duration is None else round(options.duration * _S)
-    return part(first, end, duration, options.until)
+    return part(first, end, options.duration, options.until)

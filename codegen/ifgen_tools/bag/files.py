@@ -1,16 +1,79 @@
-"""Where a bag is written: never over what exists, and all of it or nothing."""
+"""Bags on the disk as commands open and write them, and what they say about them.
+
+A bag may have put anything into a text: nothing in it steers a terminal.
+"""
 
 from __future__ import annotations
 
 import errno
 import os
 import shutil
+import sys
+import warnings
 from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
+
+from ifgen.diagnostics import printable
 
 from ifgen_tools.errors import ToolError
+
+if TYPE_CHECKING:
+    from ifgen_runtime.bag import Bag
+
+# Late imports: most verbs of the command line read no bag.
+
+
+def show(text: str) -> None:
+    """Print what the user asked for."""
+    print(printable(text))
+
+
+def say(text: str) -> None:
+    """Tell the user, beside what others may read from the output."""
+    print(printable(text), file=sys.stderr, flush=True)
+
+
+def warn(text: str) -> None:
+    """Warn the user."""
+    say(f"warning: {text}")
+
+
+def inline(text: str) -> str:
+    """A text without ends of lines."""
+    return printable(text).replace("\n", "\N{SYMBOL FOR LINE FEED}")
+
+
+@contextmanager
+def reading(path: Path, *, unlimited: bool = False) -> Generator[Bag]:
+    """An open bag. Raises ToolError for what is wrong with it; damage that it can skip is a warning."""
+    from ifgen_runtime.bag import Bag, BagError, BagWarning
+
+    def tell(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
+        if issubclass(category, BagWarning):
+            warn(str(message))
+        else:
+            usual(message, category, *_, **__)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", BagWarning)
+        usual, warnings.showwarning = warnings.showwarning, tell
+        try:
+            with Bag(path, unlimited=unlimited) as bag:
+                yield bag
+        except BagError as error:
+            raise ToolError(str(error), help=_help(path, str(error))) from None
+
+
+def _help(path: Path, error: str) -> str:
+    from ifgen_runtime.bag.errors import UNPACKS
+
+    if UNPACKS in error:
+        return "if you trust it, read all of it with --unlimited"
+    if not path.exists():
+        return "name a .mcap or .db3 file, or a folder that `bag record` made"
+    return ""
 
 
 def require_new(path: Path) -> None:
@@ -27,7 +90,7 @@ def whole(path: Path) -> Generator[Path]:
     """
     require_new(path)
     place = path.with_name(f".{path.name}.{os.getpid()}{path.suffix}")
-    with telling(path):
+    with disk_errors(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             yield place
@@ -42,9 +105,8 @@ def whole(path: Path) -> Generator[Path]:
 
 
 @contextmanager
-def telling(path: Path) -> Generator[None]:
+def disk_errors(path: Path) -> Generator[None]:
     """Raise ToolError for what the file system refuses while something is written to `path`."""
-    # Late: what writes has loaded them anyway.
     import sqlite3
 
     from ifgen_runtime.bag.errors import BagError

@@ -5,19 +5,17 @@ from __future__ import annotations
 import signal
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Literal
+from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.signals import Interrupt, defer_interrupt
-from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
+from ifgen_runtime.bag.writer import BagWriter, storage_of
 
+from ifgen_tools.bag.files import disk_errors, require_new, say, warn
 from ifgen_tools.bag.keys import SPACE, keyboard
-from ifgen_tools.bag.output import require_new, telling
-from ifgen_tools.bag.saying import say, warn
-from ifgen_tools.bag.selection import Selection
+from ifgen_tools.bag.options import RecordOptions
 from ifgen_tools.errors import ToolError
 from ifgen_tools.session import Session, open_session
 
@@ -25,7 +23,7 @@ if TYPE_CHECKING:
     from ifgen_runtime.bag.topics import Channel
     from rclpy.qos import QoSProfile
 
-    from ifgen_tools.bag.recording.recorder import Write
+    from ifgen_tools.bag.recorder import Write
 
 # Late imports: those of rclpy, once the transport has been chosen.
 
@@ -39,84 +37,53 @@ _PATIENCE: Final = {signal.SIGINT: 60.0, signal.SIGTERM: 5.0}
 """Seconds at most for writing what waits after a signal. After SIGTERM, SIGKILL may follow in 10 s."""
 
 
-@dataclass(frozen=True, slots=True)
-class RecordCommand:
-    """The topics to record, and where to write them."""
-
-    choice: Selection
-    output: Path | None = None
-    format: Format = field(default_factory=Format)
-    limits: Limits = field(default_factory=Limits)
-    qos_overrides: Path | None = None
-    include_unpublished: bool = False
-    ignore_leaves: bool = False
-    has_discovery: bool = True
-    interval: float = 0.1
-    """Seconds between two looks at the graph."""
-    use_sim_time: bool = False
-    is_paused: bool = False
-    snapshot_size: int = 0
-    """Bytes of messages that are kept until somebody asks for a snapshot; 0 records at once."""
-    custom_data: Mapping[str, str] = field(default_factory=dict[str, str])
-    has_keys: bool = True
-    node_name: str = "rosbag2_recorder"
-    most_waiting: int = 2**30
-    """Bytes of messages that may wait for the disk."""
-
-
-def record(
-    transport: Literal["local", "rclpy", "auto"],
-    command: RecordCommand,
-    is_done: Callable[[Recording], bool] = lambda _: False,
-) -> int:
+def record(options: RecordOptions, is_done: Callable[[Recording], bool] = lambda _: False) -> int:
     """Record until somebody interrupts it, or until `is_done`; the bag is complete then."""
-    output = command.output or Path(datetime.now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
+    options.selection()  # mistakes in the options come before those of files
+    format, limits, metadata = options.file_format(), options.limits(), options.metadata()
+    output = options.output or Path(datetime.now().strftime("rosbag2_%Y_%m_%d-%H_%M_%S"))
     is_folder = storage_of(output) is None
-    limits = command.limits
-    if not is_folder and (limits.size or limits.duration or command.format.outer):
+    if not is_folder and (limits.size or limits.duration or format.outer):
         raise ToolError(
             f"{output} is a single file, and cannot be split or compressed as a whole",
             help=f"name a folder with -o, such as {output.stem}",
         )
     require_new(output)
-    session = open_session(transport, (), command.node_name, use_sim_time=command.use_sim_time)
-    with session as opened, telling(output):
-        Recording(opened, command, output, is_folder).run(is_done)
+    session = open_session(options.transport, (), options.node_name, use_sim_time=options.use_sim_time)
+    with session as opened, disk_errors(output):
+        recording = Recording(
+            opened,
+            options,
+            output,
+            lambda: BagWriter(output, format, is_folder, limits, metadata, on_split=_tell_split),
+        )
+        recording.run(is_done)
     return 0
 
 
 class Recording:
     """A bag that is recorded by the node of a session."""
 
-    def __init__(self, session: Session, command: RecordCommand, output: Path, is_folder: bool) -> None:
-        from ifgen_tools.bag.qos import overrides
-        from ifgen_tools.bag.recording.recorder import RecordOptions, TopicRecorder
-        from ifgen_tools.bag.recording.services import offer_services
+    def __init__(
+        self, session: Session, options: RecordOptions, output: Path, open_writer: Callable[[], BagWriter]
+    ) -> None:
+        from ifgen_tools.bag.recorder import TopicRecorder
+        from ifgen_tools.bag.services import offer_recorder_services
 
-        self._session, self._command, self._output = session, command, output
-        options = RecordOptions(
-            command.choice,
-            overrides(command.qos_overrides),
-            command.include_unpublished,
-            command.ignore_leaves,
-            command.use_sim_time,
-            command.most_waiting,
-        )
+        self._session, self._options, self._output = session, options, output
         self.topics = TopicRecorder(session.node, options, self._open)
-        self.topics.is_paused = command.is_paused
-        self.writer = BagWriter(
-            output, command.format, is_folder, command.limits, command.custom_data, on_split=_tell_split
-        )
+        self.writer = open_writer()  # once the options have been read: a mistake in them leaves no file
         self._kept: deque[tuple[Channel, int, int, bytes]] = deque()
         self._kept_size = 0
-        offer_services(session.node, self)
+        offer_recorder_services(session.node, self)
 
     def run(self, is_done: Callable[[Recording], bool]) -> None:
         """Record, and complete the bag whatever ends it."""
-        command = self._command
+        options = self._options
+        actions: dict[str, tuple[str, Callable[[], object]]] = {SPACE: ("pause or resume", self.toggle)}
         with (
             defer_interrupt(patience=2) as interrupt,  # a write that is cut short leaves half a record
-            keyboard({SPACE: ("pause or resume", self.toggle)}, is_wanted=command.has_keys) as keys,
+            keyboard(actions, is_wanted=not options.disable_keyboard_controls) as keys,
         ):
             try:
                 legend = f" ({keys.legend})" if keys.legend else ""
@@ -126,8 +93,8 @@ class Recording:
                 self.topics.look()
                 if not self.topics.is_paused:
                     say("Recording...")  # and for these
-                if command.has_discovery:
-                    self._look_again(self._session.node, command.interval)
+                if not options.no_discovery:
+                    self._look_again(self._session.node, options.polling_interval / 1000)
                 while self._session.context.ok() and not interrupt.number and not is_done(self):
                     self._session.turn(0.0 if self.topics.has_waiting else _LOOK)
                     self.topics.record_some()
@@ -188,7 +155,7 @@ class Recording:
         channel = Channel(topic, definition_of(cls), tuple(dict.fromkeys(map(offered, offers))))
         self.writer.add(channel)
         write: Callable[[Channel, int, int, bytes], None] = self.writer.write
-        if self._command.snapshot_size:
+        if self._options.snapshot_mode:
             write = self._keep
 
         def writes(data: bytes, received: int, published: int) -> None:
@@ -200,7 +167,7 @@ class Recording:
         """Keep a message for a snapshot, and forget the oldest ones."""
         self._kept.append((channel, received, published, data))
         self._kept_size += len(data)
-        while self._kept_size > self._command.snapshot_size:
+        while self._kept_size > self._options.max_cache_size:
             self._kept_size -= len(self._kept.popleft()[3])
 
     def _summarise(self) -> None:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 from ifgen_runtime.bag.classes import decoder
 from ifgen_runtime.codec import serialize
 
-from ifgen_tools.bag.saying import warn
-from ifgen_tools.bag.selection import SERVICE_EVENTS
+from ifgen_tools.bag.files import warn
+from ifgen_tools.bag.options import SERVICE_EVENTS
 from ifgen_tools.calling import class_on_the_wire, known_class
 from ifgen_tools.errors import ToolError
 
@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from rclpy.task import Future
 
     from ifgen_tools.session import Session
-
-SOURCES: Final = {"client_introspection": 0, "service_introspection": 1}
-"""The kinds of events that have requests: those of service_msgs/msg/ServiceEventInfo for both sides."""
 
 _READY: Final = 3.0
 """Seconds that servers have to be there before the first request."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from ifgen_tools.bag.selection import Selection, selection
+from ifgen_tools.bag.options import Selection
 
 from tests.cli.conftest import Run
 
@@ -13,16 +13,16 @@ from tests.cli.conftest import Run
 @pytest.mark.parametrize(
     ("choice", "expected"),
     [
-        (selection(topics=["imu", "/_secret"]), ["/imu", "/_secret"]),
-        (selection(all_topics=True), ["/imu", "/robot/scan", "/rosout"]),
-        (selection(all_topics=True, include_hidden=True), ["/imu", "/robot/scan", "/rosout", "/_secret"]),
-        (selection(all_topics=True, exclude_topics=["/imu"]), ["/robot/scan", "/rosout"]),
-        (selection(all_topics=True, exclude_types=["rcl_interfaces/msg/Log"]), ["/imu", "/robot/scan"]),
-        (selection(regex=re.compile("scan|/ro")), ["/robot/scan", "/rosout"]),
-        (selection(regex=re.compile("ro"), exclude_regex=re.compile("out$")), ["/robot/scan"]),
-        (selection(types=["sensor_msgs/Imu"]), ["/imu"]),
-        (selection(services=["/add"]), ["/add/_service_event"]),
-        (selection(all_services=True, exclude_services=["add"]), []),
+        (Selection(topics=["imu", "/_secret"]), ["/imu", "/_secret"]),
+        (Selection(all_topics=True), ["/imu", "/robot/scan", "/rosout"]),
+        (Selection(all_topics=True, include_hidden=True), ["/imu", "/robot/scan", "/rosout", "/_secret"]),
+        (Selection(all_topics=True, exclude_topics=["/imu"]), ["/robot/scan", "/rosout"]),
+        (Selection(all_topics=True, exclude_types=["rcl_interfaces/msg/Log"]), ["/imu", "/robot/scan"]),
+        (Selection(regex=re.compile("scan|/ro")), ["/robot/scan", "/rosout"]),
+        (Selection(regex=re.compile("ro"), exclude_regex=re.compile("out$")), ["/robot/scan"]),
+        (Selection(types=["sensor_msgs/Imu"]), ["/imu"]),
+        (Selection(services=["/add"]), ["/add/_service_event"]),
+        (Selection(all_services=True, exclude_services=["add"]), []),
     ],
     ids=range(10),
 )

@@ -5,21 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
 
-from ifgen_tools.bag.output import whole
-from ifgen_tools.bag.reading import reading
-from ifgen_tools.bag.saying import show, warn
-from ifgen_tools.bag.selection import Selection, selection
+from ifgen_tools.bag.files import reading, show, warn, whole
+from ifgen_tools.bag.options import ConvertOptions, CutOptions, Selection
 from ifgen_tools.errors import ToolError
 
 if TYPE_CHECKING:
     from ifgen_runtime.bag import Bag
     from ifgen_runtime.bag.topics import Channel, Definition
 
-_S = 10**9
+_S: Final = 10**9
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +37,10 @@ class Part:
     end: int | None = None
 
 
-def everything() -> Selection:
-    """The choice of all that a bag has."""
-    return selection(all_topics=True, all_services=True, include_hidden=True)
+EVERYTHING: Final = Selection(all_topics=True, all_services=True, include_hidden=True)
 
 
-def written(
+def write_part(
     bag: Bag,
     output: Path,
     format: Format,
@@ -100,28 +96,21 @@ def _converted(data: bytes, convert: Callable[[bytes], bytes], topic: str) -> by
         ) from None
 
 
-def convert(path: Path, output: Path, format: Format, limits: Limits, *, unlimited: bool = False) -> int:
+def convert(options: ConvertOptions) -> int:
     """Write a bag in another format."""
-    with reading(path, unlimited=unlimited) as bag:
-        count = written(bag, output, format, Part(everything()), Passage, limits)
+    output, format = options.require_output(), options.file_format()
+    with reading(options.bag_path, unlimited=options.unlimited) as bag:
+        count = write_part(bag, output, format, Part(EVERYTHING), Passage, Limits(options.max_bag_size))
     show(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
     return 0
 
 
-def cut(
-    path: Path,
-    output: Path,
-    format: Format,
-    choice: Selection,
-    start: str,
-    end: str,
-    *,
-    unlimited: bool = False,
-) -> int:
+def cut(options: CutOptions) -> int:
     """Write a part of a bag."""
-    with reading(path, unlimited=unlimited) as bag:
-        part = Part(choice, _time(bag, start, "--start"), _time(bag, end, "--end"))
-        count = written(bag, output, format, part, Passage)
+    output, format = options.require_output(), options.file_format()
+    with reading(options.bag_path, unlimited=options.unlimited) as bag:
+        start, end = _time(bag, options.start, "--start"), _time(bag, options.end, "--end")
+        count = write_part(bag, output, format, Part(options.of_bag(), start, end), Passage)
     show(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
     return 0
 

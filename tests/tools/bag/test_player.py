@@ -6,8 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import pytest
-from ifgen_tools.bag.playing.pacing import PlayClock
-from ifgen_tools.bag.playing.player import Player, Range
+from ifgen_tools.bag.player import PlayClock, Player, Range
 
 S = 10**9
 
