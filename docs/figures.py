@@ -1,7 +1,7 @@
 """Prints the figures of the house: `python docs/figures.py [--small]`.
 
-They count files of Python under codegen/, the imports between them, and the arrows between the rooms of
-ifgen. `--small` lists the modules of fewer than 60 lines that one other module imports: they may belong in it.
+They count files of Python under codegen/, the imports between them, and the arrows between the rooms
+of ifgen. `--small` lists the modules of fewer than 60 lines that one other module imports.
 """
 
 from __future__ import annotations

@@ -16,6 +16,9 @@ class ToolCommand(click.Command):
     The exit code is then the number of the signal, as that of `ros2` is.
     """
 
+    ends_as_in_ros: Final = True
+    """What the command `ifgen` asks for if it is interrupted before this command, or after."""
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run it, and return its exit code."""
         from ifgen.signals import Terminated, signals_raise  # late: `--help` does without

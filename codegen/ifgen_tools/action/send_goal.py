@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.signals import Interrupt, defer_interrupt
 
-from ifgen_tools.action.list import actions
 from ifgen_tools.calling import (
     answer,
     class_on_the_wire,
@@ -16,6 +15,7 @@ from ifgen_tools.calling import (
     wait_for_server,
 )
 from ifgen_tools.errors import ToolError
+from ifgen_tools.graph.reading import actions
 from ifgen_tools.session import open_session
 from ifgen_tools.texts.formats import as_json, as_yaml
 from ifgen_tools.texts.set_fields import read_yaml, set_fields

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from ifgen_tools.names import is_hidden
+from ifgen_tools.graph.reading import is_hidden
 from ifgen_tools.types import message_name
 from ifgen_tools.verbs import SessionOptions
 

@@ -81,7 +81,7 @@ def json_value(message: ParameterValue) -> Any:
 
 
 @contextmanager
-def parameters_of(
+def remote_parameters(
     session: Session, node: str, patience: float | None = None, services_take: float | None = None
 ) -> Generator[RemoteParameters]:
     """The parameters of the node with this full name, until the block ends.
@@ -150,8 +150,10 @@ class RemoteParameters:
     def all(self) -> list[tuple[ParameterDescriptor, ParameterValue | None]]:
         """The descriptors and values of all parameters, sorted by name; None for one without a value."""
         names = self.names()
-        values = self.values(names)
-        return [(each, values.get(each.name)) for each in self.descriptors(names)]
+        values, descriptors = self.values(names), self.descriptors(names)
+        if len(descriptors) != len(names):
+            raise ToolError(f"the parameters of {self.node!r} have changed meanwhile")
+        return [(each, values.get(each.name)) for each in descriptors]
 
     def missing(self, name: str) -> ToolError:
         """The error for a parameter that has no value, or is not there."""

@@ -14,14 +14,15 @@ import click
 from ifgen_runtime import parameter_yaml
 
 from ifgen_tools.errors import ToolError
-from ifgen_tools.nodes import find_node, node_names
+from ifgen_tools.graph.lookup import find_node
+from ifgen_tools.graph.reading import node_names
 from ifgen_tools.param.client import (
     BYTES,
     FIELDS,
     TYPES,
     RemoteParameters,
     json_value,
-    parameters_of,
+    remote_parameters,
     value_of,
 )
 from ifgen_tools.param.options import DescribeOptions, GetOptions, ListOptions, NodeOptions
@@ -36,7 +37,7 @@ def opened(chosen: NodeOptions) -> Generator[RemoteParameters]:
     """The parameters of the node that the user named. Raises ToolError if it is not there."""
     with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
         node = find_node(session, chosen.node, chosen.spin_time)
-        with parameters_of(session, node, chosen.patience) as remote:
+        with remote_parameters(session, node, chosen.patience) as remote:
             yield remote
 
 
@@ -70,7 +71,7 @@ def _listed(
     session: Session, node: str, chosen: ListOptions, matches: re.Pattern[str]
 ) -> dict[str, str] | list[str]:
     """The parameters of a node to list, with the names of their types if these are wanted."""
-    with parameters_of(session, node, chosen.patience) as remote:
+    with remote_parameters(session, node, chosen.patience) as remote:
         names = [name for name in remote.names(chosen.param_prefixes) if matches.match(name)]
         if not chosen.with_types:
             return names

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from ifgen_tools import discovery
-from ifgen_tools.names import is_hidden
+from ifgen_tools.graph.reading import is_hidden
 from ifgen_tools.top import parameters, reports
 from ifgen_tools.top.figures import Figures, compare
 from ifgen_tools.top.graph import Graph, look

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.names import full_name, is_hidden
+from ifgen_tools.graph.reading import full_name, is_hidden
 from ifgen_tools.top.snapshot import ServiceRow
 
 if TYPE_CHECKING:

@@ -1,0 +1,69 @@
+"""The parameters of a running node, as NoDL describes parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+from ifgen_tools.errors import ToolError
+from ifgen_tools.param.client import json_value, remote_parameters
+
+if TYPE_CHECKING:
+    from rcl_interfaces.msg import ParameterDescriptor, ParameterValue
+
+    from ifgen_tools.session import Session
+
+_PATIENCE: Final = 5.0
+"""Seconds in which a node has to answer each question."""
+
+_TYPES: Final[Mapping[int, str]] = {
+    1: "bool",
+    2: "int",
+    3: "double",
+    4: "string",
+    5: "byte_array",
+    6: "bool_array",
+    7: "int_array",
+    8: "double_array",
+    9: "string_array",
+}
+"""The types of rcl_interfaces/msg/ParameterType as NoDL spells them; one that is not set has none."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunningParameter:
+    """A parameter with its value, None if it has none, and what its descriptor says; `step` 0 is any step."""
+
+    name: str
+    type: str
+    value: Any
+    description: str
+    read_only: bool
+    additional_constraints: str
+    bounds: tuple[float, float] | None
+    step: float
+
+
+def parameters_of(session: Session, node: str) -> tuple[RunningParameter, ...] | None:
+    """The parameters of a node; None if it has no parameter services or they do not answer."""
+    try:
+        with remote_parameters(session, node, _PATIENCE) as remote:
+            return tuple(_parameter(descriptor, value) for descriptor, value in remote.all())
+    except ToolError:
+        return None
+
+
+def _parameter(descriptor: ParameterDescriptor, value: ParameterValue | None) -> RunningParameter:
+    type_ = _TYPES.get(value.type) if value else None
+    limits: list[Any] = [*descriptor.floating_point_range, *descriptor.integer_range]
+    return RunningParameter(
+        name=descriptor.name,
+        type=type_ or _TYPES.get(descriptor.type, "none"),
+        value=json_value(value) if value else None,
+        description=descriptor.description,
+        read_only=descriptor.read_only,
+        additional_constraints=descriptor.additional_constraints,
+        bounds=(limits[0].from_value, limits[0].to_value) if limits else None,
+        step=limits[0].step if limits else 0,
+    )
