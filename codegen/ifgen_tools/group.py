@@ -17,7 +17,7 @@ class ToolCommand(click.Command):
     """
 
     ends_as_in_ros: Final = True
-    """What the command `ifgen` asks for if it is interrupted before this command, or after."""
+    """The exit codes that the command `ifgen` asks for if it is interrupted before this command, or after."""
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run it, and return its exit code."""

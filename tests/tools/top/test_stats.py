@@ -7,8 +7,7 @@ import random
 from typing import Any
 
 import pytest
-from ifgen_tools.top.figures import compare
-from ifgen_tools.top.reports import Report, read
+from ifgen_tools.top.stats import Report, compare, read_report
 
 ANSWER: dict[str, Any] = {
     "version": 1,
@@ -37,7 +36,7 @@ ANSWER: dict[str, Any] = {
 
 
 def report(**changed: Any) -> Report:
-    found = read(json.dumps({**ANSWER, **changed}).encode())
+    found = read_report(json.dumps({**ANSWER, **changed}).encode())
     assert found is not None
     return found
 
@@ -98,7 +97,7 @@ def test_the_tool_itself_is_left_out() -> None:
     ids=range(16),
 )
 def test_what_is_no_report_is_ignored(data: bytes) -> None:
-    assert read(data) is None
+    assert read_report(data) is None
 
 
 def test_nothing_that_comes_controls_the_terminal() -> None:
@@ -113,5 +112,5 @@ def test_any_bytes_are_read_or_refused() -> None:
         data = bytearray(good)
         for _ in range(chance.randint(1, 4)):
             data[chance.randrange(len(data))] = chance.randrange(256)
-        outcomes.add(read(bytes(data)) is None)
+        outcomes.add(read_report(bytes(data)) is None)
     assert outcomes == {True, False}

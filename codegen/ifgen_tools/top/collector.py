@@ -6,26 +6,32 @@ import time
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
+from ifgen_runtime.printable import printable
+
 from ifgen_tools import discovery
+from ifgen_tools.errors import ToolError
 from ifgen_tools.graph.reading import is_hidden
-from ifgen_tools.top import parameters, reports
-from ifgen_tools.top.figures import Figures, compare
+from ifgen_tools.param.client import json_value, remote_parameters
 from ifgen_tools.top.graph import Graph, look
 from ifgen_tools.top.listening import Listener, OnMessage, Tap
-from ifgen_tools.top.snapshot import NodeRow, Snapshot, SubscriptionRow, TopicRow
+from ifgen_tools.top.snapshot import NodeRow, Parameters, Snapshot, SubscriptionRow, TopicRow
+from ifgen_tools.top.stats import Report, Stats, compare, read_report
 
 if TYPE_CHECKING:
+    from rcl_interfaces.msg import ParameterValue
+
     from ifgen_tools.session import Session
-    from ifgen_tools.top.parameters import Parameters
 
 _PATIENCE: Final = 0.25
 """Seconds that processes have to answer."""
+_NODE_TAKES: Final = 2.0
+"""Seconds that the parameter services of a node have to be there, and to answer."""
 _ROUNDS: Final = 3
 """The number of snapshots for which the last report of a process is good."""
 
 
-class Gatherer:
-    """Gathers on behalf of a view. One thread calls `step`, `spin` and `parameters`; `want` may be any."""
+class Collector:
+    """Collects on behalf of a view. One thread calls `step`, `spin` and `parameters`; `want` may be any."""
 
     def __init__(
         self,
@@ -42,7 +48,7 @@ class Gatherer:
         self._listener = Listener(session.node, on_message)
         self._wanted: list[str] = []
         self._graph = Graph((), {}, ())
-        self._reports: dict[str, reports.Report] = {}
+        self._reports: dict[str, Report] = {}
         self._ages: dict[str, int] = {}
 
     def want(self, topics: Iterable[str]) -> None:
@@ -62,8 +68,13 @@ class Gatherer:
         self._session.wait_for(lambda: False, seconds)
 
     def parameters(self, node: str) -> Parameters:
-        """Read the parameters of a node."""
-        return parameters.read(self._session, node)
+        """Ask a node for all of its parameters, and wait for the answers, but not long."""
+        try:
+            with remote_parameters(self._session, node, _NODE_TAKES, _NODE_TAKES) as remote:
+                found = remote.all()
+        except ToolError as error:
+            return Parameters(node, problem=error.message)
+        return Parameters(node, tuple((printable(each.name), _shown(value)) for each, value in found))
 
     def close(self) -> None:
         """Listen no longer."""
@@ -76,19 +87,19 @@ class Gatherer:
         earlier = self._reports
         if self._session.transport == "local":
             self._ask(set(graph.nodes))
-        figures = compare(earlier, self._reports, node.get_fully_qualified_name())
+        stats = compare(earlier, self._reports, node.get_fully_qualified_name())
         self._graph = graph
         self._listener.turn()
         self.listen()
-        return self._together(graph, figures)
+        return self._together(graph, stats)
 
     def _ask(self, here: set[str]) -> None:
         """Ask all processes, and wait until those have answered that have done so before."""
         answers = discovery.survey(self._domain)
-        fresh: dict[str, reports.Report] = {}
+        fresh: dict[str, Report] = {}
 
         def have_answered() -> bool:
-            come = (reports.read(answer) for answer in answers())
+            come = (read_report(answer) for answer in answers())
             fresh.update((report.process, report) for report in come if report is not None)
             return here.issubset(node for report in fresh.values() for node in report.nodes)
 
@@ -102,30 +113,30 @@ class Gatherer:
         self._reports = kept | fresh
         self._ages = {process: self._ages[process] for process in self._reports}
 
-    def _together(self, graph: Graph, figures: Figures) -> Snapshot:
+    def _together(self, graph: Graph, stats: Stats) -> Snapshot:
         subscriptions = tuple(
-            each for each in figures.subscriptions if self._include_hidden or not is_hidden(each.topic)
+            each for each in stats.subscriptions if self._include_hidden or not is_hidden(each.topic)
         )
         is_local = self._session.transport == "local"
         return Snapshot(
             at=time.time(),
             transport=self._session.transport,
-            nodes=_nodes(graph, figures),
-            topics=tuple(self._topic(name, graph, figures, subscriptions) for name in graph.topics),
+            nodes=_nodes(graph, stats),
+            topics=tuple(self._topic(name, graph, stats, subscriptions) for name in graph.topics),
             subscriptions=subscriptions,
-            executors=figures.executors,
+            executors=stats.executors,
             services=graph.services,
             actions=graph.actions,
-            silent=tuple(each for each in graph.nodes if is_local and each not in figures.processes),
+            silent=tuple(each for each in graph.nodes if is_local and each not in stats.processes),
         )
 
     def _topic(
-        self, name: str, graph: Graph, figures: Figures, subscriptions: tuple[SubscriptionRow, ...]
+        self, name: str, graph: Graph, stats: Stats, subscriptions: tuple[SubscriptionRow, ...]
     ) -> TopicRow:
         topic, tap = graph.topics[name], self._listener.taps.get(name)
         rate = tap.rate if tap is not None else None
-        if topic.publishers and figures.counted.get(name, 0) == len(topic.publishers):
-            rate = figures.rates.get(name, rate)  # exact, and nothing gets lost on the way
+        if topic.publishers and stats.counted.get(name, 0) == len(topic.publishers):
+            rate = stats.rates.get(name, rate)  # exact, and nothing gets lost on the way
         bandwidth = None
         if tap is not None and rate is not None and (tap.mean_size is not None or not rate):
             bandwidth = rate * (tap.mean_size or 0)
@@ -143,7 +154,7 @@ class Gatherer:
         )
 
 
-def _nodes(graph: Graph, figures: Figures) -> tuple[NodeRow, ...]:
+def _nodes(graph: Graph, stats: Stats) -> tuple[NodeRow, ...]:
     publishers = [node for topic in graph.topics.values() for node in topic.publishers]
     subscriptions = [node for topic in graph.topics.values() for node in topic.subscriptions]
     servers = [node for service in graph.services for node in service.servers]
@@ -151,12 +162,20 @@ def _nodes(graph: Graph, figures: Figures) -> tuple[NodeRow, ...]:
     return tuple(
         NodeRow(
             node,
-            figures.processes.get(node),
+            stats.processes.get(node),
             publishers.count(node),
             subscriptions.count(node),
             servers.count(node),
             clients.count(node),
-            figures.loads.get(node),
+            stats.loads.get(node),
         )
         for node in graph.nodes
     )
+
+
+def _shown(message: ParameterValue | None) -> str:
+    """The value of a parameter for people."""
+    value = None if message is None else json_value(message)
+    if value is None:
+        return "not set"
+    return str(value).lower() if isinstance(value, bool) else printable(str(value))

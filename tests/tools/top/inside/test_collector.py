@@ -11,10 +11,11 @@ from typing import Any
 import pytest
 import rclpy
 from ifgen_tools.session import Session, open_session
-from ifgen_tools.top.gathering import Gatherer
+from ifgen_tools.top.collector import Collector
 from ifgen_tools.top.snapshot import Snapshot
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rmw_local import statistics
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
@@ -35,6 +36,7 @@ def walker() -> Iterator[Node]:
     rclpy.init(args=[])
     node = rclpy.create_node("walker", namespace="/robot")
     node.declare_parameter("speed", 0.1)
+    node.declare_parameter("unset", Parameter.Type.DOUBLE)
     publisher = node.create_publisher(String, "word", 10)
     node.create_subscription(String, "word", lambda _: time.sleep(0.001), 1)
     node.create_service(Trigger, "reset", lambda _, response: response)
@@ -61,11 +63,11 @@ def session(walker: Node) -> Iterator[Session]:
         yield made
 
 
-def looked(gatherer: Gatherer, seconds: float = 0.5) -> Snapshot:
+def looked(collector: Collector, seconds: float = 0.5) -> Snapshot:
     """What there is, with the rates of a moment."""
-    gatherer.step()
-    gatherer.spin(seconds)
-    return gatherer.step()
+    collector.step()
+    collector.spin(seconds)
+    return collector.step()
 
 
 def row(rows: Any, **wanted: Any) -> Any:
@@ -74,9 +76,9 @@ def row(rows: Any, **wanted: Any) -> Any:
 
 
 def test_everything_that_is_there(session: Session) -> None:
-    gatherer = Gatherer(session)
-    gatherer.want(["/robot/word"])
-    found = looked(gatherer)
+    collector = Collector(session)
+    collector.want(["/robot/word"])
+    found = looked(collector)
     node = row(found.nodes)
     assert (node.name, node.publishers, node.subscriptions, node.clients) == ("/robot/walker", 3, 1, 0)
     assert node.process is not None
@@ -94,22 +96,22 @@ def test_everything_that_is_there(session: Session) -> None:
     assert executor.longest >= 0.001
     assert row(found.services, name="/robot/reset").servers == ("/robot/walker",)
     assert found.silent == ()
-    gatherer.close()
+    collector.close()
 
 
 def test_it_listens_only_to_what_is_wanted_and_never_shows_itself(session: Session, walker: Node) -> None:
-    gatherer = Gatherer(session)
-    assert looked(gatherer, 0.1).nodes[0].subscriptions == 1
+    collector = Collector(session)
+    assert looked(collector, 0.1).nodes[0].subscriptions == 1
     assert walker.count_subscribers("/robot/word") == 1
-    gatherer.want(["/robot/word", "/nobody"])
-    gatherer.step()
+    collector.want(["/robot/word", "/nobody"])
+    collector.step()
     assert walker.count_subscribers("/robot/word") == 2
-    found = looked(gatherer, 0.1)
+    found = looked(collector, 0.1)
     assert found.topics[1].subscriptions == ("/robot/walker",)
-    gatherer.want([])
-    gatherer.step()
+    collector.want([])
+    collector.step()
     assert walker.count_subscribers("/robot/word") == 1
-    quiet = Gatherer(session, listens=False)
+    quiet = Collector(session, listens=False)
     quiet.want(["/robot/word"])
     topic = row(looked(quiet, 0.2).topics, name="/robot/word")
     assert topic.rate > 0
@@ -118,15 +120,16 @@ def test_it_listens_only_to_what_is_wanted_and_never_shows_itself(session: Sessi
 
 
 def test_parameters(session: Session) -> None:
-    found = Gatherer(session).parameters("/robot/walker")
+    found = Collector(session).parameters("/robot/walker")
     assert found.problem == ""
     assert ("speed", "0.1") in found.values
     assert ("use_sim_time", "false") in found.values
+    assert ("unset", "not set") in found.values  # and the others are shown nevertheless
 
 
 def test_a_node_without_parameters(session: Session, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ifgen_tools.top.parameters._PATIENCE", 0.05)
-    assert "no parameter services" in Gatherer(session).parameters("/nobody").problem
+    monkeypatch.setattr("ifgen_tools.top.collector._NODE_TAKES", 0.05)
+    assert "has no services for its parameters" in Collector(session).parameters("/nobody").problem
 
 
 def test_once(ifgen: Run, walker: Node, monkeypatch: pytest.MonkeyPatch) -> None:
