@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from ifgen_tools.graph.reading import is_hidden
 from ifgen_tools.types import message_name
 from ifgen_tools.verbs import SessionOptions
 
@@ -56,6 +55,8 @@ class Selection:
 
     def takes(self, topic: str, type_name: str) -> bool:
         """Whether a topic is chosen."""
+        from ifgen_tools.graph.reading import is_hidden  # half of the time that `--help` takes
+
         name = topic.removesuffix(SERVICE_EVENTS)
         if self.exclude_regex is not None and self.exclude_regex.search(name):
             return False
