@@ -29,7 +29,7 @@ from gait_planner.gait_planner import GaitPlanner
 from humanoid.trials import graph_trials as trials
 from humanoid.trials.graph import NodeGraph
 from humanoid.trials.user import User
-from ifgen_pytest.publications import publications
+from ifgen_pytest.recording import publications
 from ifgen_pytest.replaying import replay
 from ifgen_runtime.bag import Bag, Recorder
 from imu_fusion.imu_fusion import ImuFusion

@@ -60,7 +60,7 @@ def _value(message: Any, field: str) -> Any:
 
 
 def _is_replay(value: object) -> bool:
-    return type(value).__module__ == "ifgen_pytest.replayed"  # without importing what few tests need
+    return type(value).__module__ == "ifgen_pytest.replaying"  # without importing what few tests need
 
 
 def _is_message(value: object) -> bool:

@@ -9,10 +9,14 @@ from typing import Any
 import pytest
 
 from ifgen_pytest import transport
-from ifgen_pytest.bags import FOLDER, RECORDING, bag, record, replay
 from ifgen_pytest.comparison import explain
 from ifgen_pytest.domains import RANGE
 from ifgen_pytest.fixtures import (
+    FOLDER,
+    RECORDING,
+    bag,
+    record,
+    replay,
     ros_collect,
     ros_context,
     ros_executor,
@@ -20,7 +24,6 @@ from ifgen_pytest.fixtures import (
     ros_node,
     ros_virtual_clock,
 )
-from ifgen_pytest.hints import hint, skips
 from ifgen_pytest.strict import StrictCheck
 
 __all__ = [
@@ -69,7 +72,7 @@ def pytest_load_initial_conftests(
         yield
     except Exception as error:
         cause = getattr(error, "cause", None)  # of a conftest that cannot be imported
-        if wanted is None and isinstance(cause, Exception) and (advice := hint(cause)):
+        if wanted is None and isinstance(cause, Exception) and (advice := transport.hint(cause)):
             cause.add_note(f"ifgen: {advice}")
         raise
     transport.add_option(parser)
@@ -107,13 +110,13 @@ def pytest_assertrepr_compare(op: str, left: object, right: object) -> list[str]
 def pytest_exception_interact(node: pytest.Item | pytest.Collector, call: Any, report: Any) -> None:
     """Say what brings a module that is missing."""
     asked = node.config.stash.get(_TRANSPORT, None) is not None
-    if not asked and call.excinfo is not None and (advice := hint(call.excinfo.value)):
+    if not asked and call.excinfo is not None and (advice := transport.hint(call.excinfo.value)):
         report.sections.append(("ifgen", advice))
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """Say why generated tests were skipped: pytest itself says so with -rs only."""
-    for line in skips(terminalreporter.stats.get("skipped", ())):
+    for line in transport.skips(terminalreporter.stats.get("skipped", ())):
         terminalreporter.write_line(line)
 
 

@@ -1,25 +1,56 @@
-"""Recordings of tests: one that fails leaves its bag and says where."""
+"""Recordings of what the nodes of a test publish: one that fails leaves its bag and says where."""
 
 from __future__ import annotations
 
+import importlib
 import re
 import shutil
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import WeakKeyDictionary
 
 from ifgen_runtime.bag import Recorder
 
 from ifgen_pytest.comparison import counted
-from ifgen_pytest.publications import publications
 
 if TYPE_CHECKING:
     import pytest
 
 _NOT_IN_NAMES = re.compile(r"[^\w.-]+")
+
+Heard = Callable[[str, Any, Any, int], None]
+"""Takes the full topic, the publisher, the message or its bytes, and the time [ns since 1970]."""
+
+
+@contextmanager
+def publications(heard: Heard) -> Generator[None]:
+    """Call a function for each message that a publisher sends while the block runs, subscribed to or not.
+
+    There is no subscription that could miss what a constructor publishes, and nothing to match or to spin.
+    What rclpy sends by itself is not heard: /rosout, and the hidden topics of actions and services.
+    """
+    publisher_class = importlib.import_module("rclpy.publisher").Publisher  # that of the chosen transport
+    clock = importlib.import_module("rclpy.clock").Clock()
+    publish = publisher_class.publish
+    topics: WeakKeyDictionary[Any, str] = WeakKeyDictionary()
+
+    def publish_and_tell(publisher: Any, message: Any) -> None:
+        now = clock.now().nanoseconds  # before: another thread may answer at once
+        publish(publisher, message)
+        topic = topics.get(publisher)
+        if topic is None:
+            topic = topics[publisher] = publisher.topic_name
+        heard(topic, publisher, message, now)
+
+    publisher_class.publish = publish_and_tell
+    try:
+        yield
+    finally:
+        publisher_class.publish = publish
 
 
 class Recording:

@@ -81,17 +81,12 @@ def parameters(context: click.Context, typed: str) -> Iterator[str]:
     if len(context.params.get("pairs") or ()) % 2:
         return  # the value of one is being typed
     node = str(context.params["node"])
-    with _looking(context) as session:
-        from rclpy.parameter_client import AsyncParameterClient
+    from ifgen_tools.param.client import remote_parameters
 
-        client = AsyncParameterClient(session.node, node if node.startswith("/") else f"/{node}")
-        if not session.wait_for(client.services_are_ready, _PATIENCE):
-            return
-        future = client.list_parameters()
-        session.wait_for(future.done, _PATIENCE)
-        answer = future.result() if future.done() else None
-    if answer is not None:
-        yield from answer.result.names
+    with _looking(context) as session:
+        full_name = node if node.startswith("/") else f"/{node}"
+        with remote_parameters(session, full_name, _PATIENCE, _PATIENCE) as remote:
+            yield from remote.names()
 
 
 @completing

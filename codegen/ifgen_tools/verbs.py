@@ -1,11 +1,13 @@
-"""The options of verbs as typed values, which click would pass as loose keywords."""
+"""The options of verbs as typed values, and options with several values after them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import wraps
-from typing import Literal, TypeAlias, TypeVar
+from typing import Any, Literal, TypeAlias, TypeVar
+
+import click
 
 TransportChoice: TypeAlias = Literal["local", "rclpy", "auto"]
 """The values of `--transport`."""
@@ -30,6 +32,47 @@ class GraphOptions(SessionOptions):
     use_sim_time: bool = False
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListOptions(GraphOptions):
+    """The options of a verb `list`."""
+
+    include_hidden: bool = False
+    show_types: bool = False
+    count: bool = False
+    verbose: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FindOptions(GraphOptions):
+    """The options of a verb `find`."""
+
+    type_name: str
+    include_hidden: bool = False
+    count: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NameOptions(GraphOptions):
+    """The options of the verbs `type` and `info`, which are about one topic, service or action."""
+
+    name: str
+    show_types: bool = False
+    count: bool = False
+    verbose: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CallOptions(SessionOptions):
+    """The options of `service call` and `action send_goal`; a call is repeated at a `rate` [Hz]."""
+
+    name: str
+    type_name: str
+    values: str | None = None
+    from_stdin: bool = False
+    rate: float | None = None
+    feedback: bool = False
+
+
 def takes(cls: type[_Options]) -> Callable[[Callable[[_Options], _Result]], Callable[..., _Result]]:
     """Let a command take its options as one dataclass, whose fields have the names of click's parameters."""
 
@@ -41,3 +84,38 @@ def takes(cls: type[_Options]) -> Callable[[Callable[[_Options], _Result]], Call
         return run
 
     return decorate
+
+
+class ManyOption(click.Option):
+    """An option that takes all values up to the next option, as in ROS: `--topics /imu /scan`."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **{**kwargs, "multiple": True})
+
+
+class ManyCommand(click.Command):
+    """A command whose `ManyOption`s may have several values."""
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Repeat the name of an option before each of its values, which click understands."""
+        names = {name for param in self.params if isinstance(param, ManyOption) for name in param.opts}
+        spread: list[str] = []
+        current = ""
+        has_value = True
+        for position, argument in enumerate(args):
+            if argument == "--":
+                spread += args[position:]
+                break
+            if argument in names:
+                current, has_value = argument, False
+            elif argument.startswith("-") and argument != "-":
+                current = ""
+                spread.append(argument)
+            elif current:
+                spread += [current, argument]
+                has_value = True
+            else:
+                spread.append(argument)
+            if not has_value and (position + 1 == len(args) or args[position + 1].startswith("-")):
+                raise click.UsageError(f"Option '{current}' requires at least one value.", ctx)
+        return super().parse_args(ctx, spread)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import click
 from ifgen.command_kit import options
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
+from ifgen_tools.verbs import CallOptions, FindOptions, ListOptions, NameOptions, takes
 
 # Late imports: each verb loads what it needs.
 
@@ -23,22 +22,24 @@ def action() -> None:
 @click.option("-t", "--show-types", is_flag=True, help="The types as well.")
 @click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Only how many there are.")
 @options.json_option
-def list_(**chosen: Any) -> None:
+@takes(ListOptions)
+def list_(chosen: ListOptions) -> None:
     """Print the names of all actions."""
-    from ifgen_tools.action import graph
+    from ifgen_tools.action.list import list_actions
 
-    graph.list_actions(**chosen)
+    list_actions(chosen)
 
 
 @action.command("type", epilog="Example: ifgen action type /walk")
 @click.argument("name", metavar="ACTION", shell_complete=completion.actions)
 @options.graph_options
 @options.json_option
-def type_(**chosen: Any) -> None:
+@takes(NameOptions)
+def type_(chosen: NameOptions) -> None:
     """Print the type of an action."""
-    from ifgen_tools.action import graph
+    from ifgen_tools.action.list import print_type
 
-    graph.print_type(**chosen)
+    print_type(chosen)
 
 
 @action.command(epilog="Example: ifgen action find example_interfaces/action/Fibonacci")
@@ -46,11 +47,12 @@ def type_(**chosen: Any) -> None:
 @options.graph_options
 @click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Only how many there are.")
 @options.json_option
-def find(**chosen: Any) -> None:
+@takes(FindOptions)
+def find(chosen: FindOptions) -> None:
     """Print the actions of a type."""
-    from ifgen_tools.action import graph
+    from ifgen_tools.action.list import find_actions
 
-    graph.find_actions(**chosen)
+    find_actions(chosen)
 
 
 @action.command(epilog="Example: ifgen action info /walk -t")
@@ -59,11 +61,12 @@ def find(**chosen: Any) -> None:
 @click.option("-t", "--show-types", is_flag=True, help="The types as well.")
 @click.option("-c", "--count", is_flag=True, help="Only how many clients and servers there are.")
 @options.json_option
-def info(**chosen: Any) -> None:
+@takes(NameOptions)
+def info(chosen: NameOptions) -> None:
     """Print the nodes that serve an action, and those that send goals to it."""
-    from ifgen_tools.action import graph
+    from ifgen_tools.action.list import action_info
 
-    graph.action_info(**chosen)
+    action_info(chosen)
 
 
 @action.command(
@@ -77,12 +80,13 @@ def info(**chosen: Any) -> None:
 @click.option("-f", "--feedback", is_flag=True, help="Print feedback as well.")
 @options.transport_option
 @options.json_option
-def send_goal(**chosen: Any) -> int:
+@takes(CallOptions)
+def send_goal(chosen: CallOptions) -> int:
     """Send a goal to an action, and print the result. Ctrl-C cancels the goal.
 
     GOAL is YAML. Fields that are not in it keep their default values; `auto` for a header and `now` for a
     time stand for the time of sending. TYPE need not be installed if the server describes it.
     """
-    from ifgen_tools.action.goal import send_goal
+    from ifgen_tools.action.send_goal import send_goal
 
-    return send_goal(**chosen)
+    return send_goal(chosen)

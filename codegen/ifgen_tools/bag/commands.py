@@ -14,7 +14,16 @@ from ifgen.command_kit.options import Command
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
-from ifgen_tools.bag.many import ManyCommand, ManyOption
+from ifgen_tools.bag.options import (
+    CheckOptions,
+    ConvertOptions,
+    CutOptions,
+    InfoOptions,
+    MigrateOptions,
+    PlayOptions,
+    RecordOptions,
+)
+from ifgen_tools.verbs import ManyCommand, ManyOption, takes
 
 # Late imports: each verb loads what it needs.
 
@@ -22,8 +31,33 @@ _BAG: Final = click.argument("bag_path", metavar="BAG", type=click.Path(path_typ
 _UNLIMITED: Final = click.option(
     "--unlimited", is_flag=True, help="Read files that unpack to far more than their size, too."
 )
+_OUTPUT: Final = click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="A new folder, or a .mcap or .db3 file."
+)
+_STORAGE: Final = click.option(
+    "-s", "--storage", type=click.Choice(["mcap", "sqlite3"]), help="By the output's name, or mcap."
+)
+_COMPRESSION: Final = click.option(
+    "--compression-format",
+    type=click.Choice(["zstd", "lz4", ""]),
+    default="",
+    metavar="[zstd|lz4]",
+    help="What to compress with.",
+)
+_MODE: Final = click.option(
+    "--compression-mode",
+    type=click.Choice(["none", "file", "message"], case_sensitive=False),
+    default="none",
+    help="Compress whole files, or each message.",
+)
+_QOS: Final = click.option(
+    "--qos-profile-overrides-path",
+    "qos_overrides",
+    type=click.Path(path_type=Path),
+    help="A YAML file with a QoS profile for each topic.",
+)
+_NO_KEYS: Final = click.option("--disable-keyboard-controls", is_flag=True, help="Listen to no keys.")
 _many = partial(click.option, cls=ManyOption)
-_S: Final = 10**9
 
 
 def _regex(_: click.Context, __: click.Parameter, text: str) -> re.Pattern[str] | None:
@@ -37,6 +71,11 @@ def _positive(_: click.Context, __: click.Parameter, value: float | None) -> flo
     if value is not None and not 0 < value < float("inf"):
         raise click.BadParameter(f"{value} is not in the valid range (> 0.0)")
     return value
+
+
+def _written(command: Command) -> Command:
+    """The options that say where and how a bag is written."""
+    return _OUTPUT(_STORAGE(_COMPRESSION(_MODE(command))))
 
 
 def _chosen(command: Command) -> Command:
@@ -73,9 +112,7 @@ def bag() -> None:
 
 @bag.command(cls=ManyCommand, epilog="Example: `ifgen bag record -o drive /imu /scan` until Ctrl-C.")
 @click.argument("names", metavar="[TOPIC]...", nargs=-1, shell_complete=completion.topics)
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="A new folder, or a .mcap or .db3 file."
-)
+@_OUTPUT
 @click.option("-s", "--storage", type=click.Choice(["mcap", "sqlite3"]), help="mcap is the default.")
 @_chosen
 @_many("--topic-types", metavar="TYPE...", help="All topics of these types.")
@@ -98,12 +135,7 @@ def bag() -> None:
     show_default=True,
 )
 @click.option("--ignore-leaf-topics", is_flag=True, help="No topics without a subscription.")
-@click.option(
-    "--qos-profile-overrides-path",
-    "qos_overrides",
-    type=click.Path(path_type=Path),
-    help="A YAML file with a QoS profile for each topic.",
-)
+@_QOS
 @click.option(
     "-b",
     "--max-bag-size",
@@ -126,19 +158,8 @@ def bag() -> None:
     default=0,
     help="Keep this number of files, and delete the oldest.",
 )
-@click.option(
-    "--compression-mode",
-    type=click.Choice(["none", "file", "message"], case_sensitive=False),
-    default="none",
-    help="Compress whole files, or each message.",
-)
-@click.option(
-    "--compression-format",
-    type=click.Choice(["zstd", "lz4", ""]),
-    default="",
-    metavar="[zstd|lz4]",
-    help="What to compress with.",
-)
+@_MODE
+@_COMPRESSION
 @click.option(
     "--storage-preset-profile",
     "preset",
@@ -167,7 +188,7 @@ def bag() -> None:
     "--node-name", default="rosbag2_recorder", show_default=True, help="The name of the recorder's node."
 )
 @_many("--custom-data", metavar="KEY=VALUE...", help="Write these into the metadata.")
-@click.option("--disable-keyboard-controls", is_flag=True, help="Listen to no keys.")
+@_NO_KEYS
 @_accepted("-f", "--serialization-format")
 @_accepted("--storage-config-file")
 @_accepted("--log-level")
@@ -176,12 +197,12 @@ def bag() -> None:
 @_accepted("--compression-threads", type=int)
 @_accepted("--compression-threads-priority", type=int)
 @options.transport_option
-def record(**chosen: Any) -> int:
+@takes(RecordOptions)
+def record(chosen: RecordOptions) -> int:
     """Record topics until Ctrl-C. Topics that appear later are recorded as well."""
-    from ifgen_tools.bag.choices import record_command
-    from ifgen_tools.bag.recording.record import record as run
+    from ifgen_tools.bag.record import record as run
 
-    return run(chosen["transport"], record_command(**chosen))
+    return run(chosen)
 
 
 @bag.command(cls=ManyCommand, epilog="Example: `ifgen bag play drive --rate 2 --clock` at twice the speed.")
@@ -223,12 +244,7 @@ def record(**chosen: Any) -> int:
     help="Wait before each start.",
 )
 @click.option("-p", "--start-paused", is_flag=True, help="Wait for SPACE, or for the service ~/resume.")
-@click.option(
-    "--qos-profile-overrides-path",
-    "qos_overrides",
-    type=click.Path(path_type=Path),
-    help="A YAML file with a QoS profile for each topic.",
-)
+@_QOS
 @click.option(
     "--wait-for-all-acked",
     type=float,
@@ -248,23 +264,23 @@ def record(**chosen: Any) -> int:
     metavar="SOURCE",
     help="Whose events have the requests: service_introspection (the default) or client_introspection.",
 )
-@click.option("--disable-keyboard-controls", is_flag=True, help="Listen to no keys.")
+@_NO_KEYS
 @_accepted("-s", "--storage")
 @_accepted("--read-ahead-queue-size", type=int)
 @_accepted("--storage-config-file")
 @_accepted("--disable-loan-message", is_flag=True)
 @_accepted("--log-level")
 @options.transport_option
-def play(bag_path: Path, **chosen: Any) -> int:
+@takes(PlayOptions)
+def play(chosen: PlayOptions) -> int:
     """Publish what was recorded, at the pace at which it was.
 
     SPACE pauses, the right arrow publishes the next message, up and down change the rate. Others can do the
     same by the services of /rosbag2_player.
     """
-    from ifgen_tools.bag.choices import play_options
-    from ifgen_tools.bag.playing.play import play as run
+    from ifgen_tools.bag.play import play as run
 
-    return run(bag_path, chosen["transport"], play_options(**chosen))
+    return run(chosen)
 
 
 @bag.command(epilog="Example: `ifgen bag info drive` shows its topics, and how many messages they have.")
@@ -279,55 +295,12 @@ def play(bag_path: Path, **chosen: Any) -> int:
 )
 @options.json_option
 @_accepted("-s", "--storage")
-def info(bag_path: Path, **chosen: Any) -> int:
+@takes(InfoOptions)
+def info(chosen: InfoOptions) -> int:
     """Print what is in a bag."""
     from ifgen_tools.bag.info import info as run
 
-    return run(bag_path, **chosen)
-
-
-_OUTPUT: Final = click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="A new folder, or a .mcap or .db3 file."
-)
-_STORAGE: Final = click.option(
-    "-s", "--storage", type=click.Choice(["mcap", "sqlite3"]), help="By the output's name, or mcap."
-)
-_COMPRESSION: Final = click.option(
-    "--compression-format",
-    type=click.Choice(["zstd", "lz4", ""]),
-    default="",
-    metavar="[zstd|lz4]",
-    help="What to compress with.",
-)
-_MODE: Final = click.option(
-    "--compression-mode",
-    type=click.Choice(["none", "file", "message"], case_sensitive=False),
-    default="none",
-    help="Compress whole files, or each message.",
-)
-
-
-def _written(command: Command) -> Command:
-    """The options that say where and how a bag is written."""
-    return _OUTPUT(_STORAGE(_COMPRESSION(_MODE(command))))
-
-
-def _format(chosen: dict[str, Any]) -> Any:
-    from ifgen_tools.bag.choices import file_format
-
-    return file_format(
-        storage=chosen["storage"],
-        output=chosen["output"],
-        mode=chosen["compression_mode"].lower(),
-        compression=chosen["compression_format"],
-    )
-
-
-def _needs_output(chosen: dict[str, Any]) -> Path:
-    if chosen["output"] is None:
-        raise click.UsageError("Missing option '-o' / '--output'.")
-    path: Path = chosen["output"]
-    return path
+    return run(chosen)
 
 
 @bag.command(epilog="Example: `ifgen bag convert drive -o drive.mcap` makes one file of a folder.")
@@ -337,13 +310,12 @@ def _needs_output(chosen: dict[str, Any]) -> Path:
 @click.option(
     "-b", "--max-bag-size", type=int, default=0, metavar="BYTES", help="Begin a new file after these."
 )
-def convert(bag_path: Path, max_bag_size: int, unlimited: bool, **chosen: Any) -> int:
+@takes(ConvertOptions)
+def convert(chosen: ConvertOptions) -> int:
     """Write a bag in another format: MCAP or SQLite, a folder or a file, compressed or not."""
-    from ifgen_runtime.bag.writer import Limits
+    from ifgen_tools.bag.copy import convert as run
 
-    from ifgen_tools.bag.copying import convert as run
-
-    return run(bag_path, _needs_output(chosen), _format(chosen), Limits(max_bag_size), unlimited=unlimited)
+    return run(chosen)
 
 
 @bag.command(cls=ManyCommand, epilog="Example: `ifgen bag cut drive -o turn.mcap --start 2 --end 5`.")
@@ -355,14 +327,12 @@ def convert(bag_path: Path, max_bag_size: int, unlimited: bool, **chosen: Any) -
     "--start", default="", metavar="TIME", help="Seconds from the start, from the end (-3), or @UNIX."
 )
 @click.option("--end", default="", metavar="TIME", help="The same; what is received then is left out.")
-def cut(bag_path: Path, **chosen: Any) -> int:
+@takes(CutOptions)
+def cut(chosen: CutOptions) -> int:
     """Write a part of a bag: a range of time, or some topics. Messages stay as they are."""
-    from ifgen_tools.bag.choices import playable
-    from ifgen_tools.bag.copying import cut as run
+    from ifgen_tools.bag.copy import cut as run
 
-    output = _needs_output(chosen)
-    part = playable(chosen), chosen["start"], chosen["end"]
-    return run(bag_path, output, _format(chosen), *part, unlimited=chosen["unlimited"])
+    return run(chosen)
 
 
 @bag.command(epilog="Example: `ifgen bag check drive` reads all of it, and compares its definitions.")
@@ -370,13 +340,14 @@ def cut(bag_path: Path, **chosen: Any) -> int:
 @_UNLIMITED
 @options.json_option
 @options.transport_option
-def check(bag_path: Path, transport: Any, as_json: bool, unlimited: bool) -> int:
+@takes(CheckOptions)
+def check(chosen: CheckOptions) -> int:
     """Say whether a bag is whole, and which of its types are defined otherwise here."""
     from ifgen_tools.bag.check import check as run
     from ifgen_tools.session import activate
 
-    activate(transport)
-    return run(bag_path, as_json=as_json, unlimited=unlimited)
+    activate(chosen.transport)
+    return run(chosen)
 
 
 @bag.command(epilog="Example: `ifgen bag migrate drive --check` says what would be lost.")
@@ -396,7 +367,8 @@ def check(bag_path: Path, transport: Any, as_json: bool, unlimited: bool) -> int
 @click.option("--check", is_flag=True, help="Write nothing, and say what would be lost.")
 @click.option("--lossy", is_flag=True, help="Accept that fields are lost, or get their defaults.")
 @options.transport_option
-def migrate(bag_path: Path, reference: str, adapters: str, check: bool, lossy: bool, **chosen: Any) -> int:
+@takes(MigrateOptions)
+def migrate(chosen: MigrateOptions) -> int:
     """Write a bag with the definitions of today.
 
     Messages are converted by your adapters (`ifgen adapt`), else field by field where no value can be lost.
@@ -404,6 +376,5 @@ def migrate(bag_path: Path, reference: str, adapters: str, check: bool, lossy: b
     from ifgen_tools.bag.migrate import migrate as run
     from ifgen_tools.session import activate
 
-    activate(chosen["transport"])
-    flags = {"check": check, "lossy": lossy, "unlimited": chosen["unlimited"]}
-    return run(bag_path, chosen["output"], _format(chosen), reference, adapters, **flags)
+    activate(chosen.transport)
+    return run(chosen)

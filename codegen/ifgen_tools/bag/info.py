@@ -7,9 +7,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.bag.reading import reading
-from ifgen_tools.bag.saying import inline, show
-from ifgen_tools.bag.selection import SERVICE_EVENTS, is_service_event
+from ifgen_tools.bag.files import inline, reading, show
+from ifgen_tools.bag.options import SERVICE_EVENTS, InfoOptions, is_service_event
 
 if TYPE_CHECKING:
     from ifgen_runtime.bag import Bag
@@ -25,18 +24,18 @@ _RESPONSE, _LAST_KIND = 2, 3
 """The first and the last type of an event that is about a response; those below are about requests."""
 
 
-def info(path: Path, *, topic_name: bool, verbose: bool, as_json: bool, unlimited: bool = False) -> int:
+def info(options: InfoOptions) -> int:
     """Print what is in a bag, as `ros2 bag info` does."""
-    with reading(path, unlimited=unlimited) as bag:
+    with reading(options.bag_path, unlimited=options.unlimited) as bag:
         topics = [topic for topic in bag.topics.values() if not is_service_event(topic.name)]
         services = [topic for topic in bag.topics.values() if is_service_event(topic.name)]
-        if as_json:
+        if options.as_json:
             show(json.dumps(_document(bag), indent=2))
-        elif topic_name:
+        elif options.topic_name:
             for topic in topics:
                 show(inline(topic.name))
         else:
-            show(_text(bag, topics, services, verbose))
+            show(_text(bag, topics, services, options.verbose))
     return 0
 
 

@@ -83,7 +83,7 @@ def users(
     parts: Iterable[ServicePart],
     service_hashes: Mapping[Gid, str] = MappingProxyType({}),
 ) -> tuple[User, ...]:
-    """What nodes use, without hidden nodes and names.
+    """The types that nodes use, without hidden nodes and names.
 
     `service_hashes` are those of whole services by gid, for a middleware that may not tell those of parts.
     """

@@ -1,4 +1,4 @@
-"""What this machine has, and how to get the rest."""
+"""The parts that this machine has, and how to get the rest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a user names of the graph: nodes, services and actions, and how they are listed."""
+"""Nodes, services and actions by the names that a user writes, and how they are listed."""
 
 from __future__ import annotations
 

@@ -89,14 +89,14 @@ class View:
     endpoints: tuple[Endpoint, ...]
 
     def visible(self) -> View:
-        """What is not hidden, of names and of nodes."""
+        """The names and the nodes that are not hidden."""
         nodes = tuple(node for node in self.nodes if not is_hidden(node))
         known = set(nodes)
         ends = (each for each in self.endpoints if each.node in known and not is_hidden(each.name))
         return View(nodes, tuple(ends))
 
     def of_authors(self) -> View:
-        """What authors of nodes have written: visible, not of the framework, and nothing twice."""
+        """The endpoints that authors of nodes wrote: visible, not of the framework, and nothing twice."""
         shown = self.visible()
         return View(
             shown.nodes, tuple(dict.fromkeys(each for each in shown.endpoints if not each.is_of_framework))
@@ -161,7 +161,7 @@ def actions(node: Node) -> list[Named]:
 
 
 def of_node(node: Node, name: str) -> dict[Category, list[Named]]:
-    """What a node of this full name has. Raises RuntimeError, which rclpy's errors are, if it is gone."""
+    """The endpoints of the node with this name. Raises RuntimeError, as rclpy's errors are, if it is gone."""
     from rclpy import action
 
     namespace, _, last = name.rpartition("/")

@@ -6,13 +6,13 @@ import json
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
 
 import click
 from ifgen.command_kit import options
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
+from ifgen_tools.verbs import TransportChoice
 
 # Late imports: each verb loads what it needs.
 
@@ -97,7 +97,7 @@ def show(type_: str, all_comments: bool, no_comments: bool, include: tuple[Path,
     `ifgen topic type /chatter | ifgen interface show -`.
     """
     from ifgen_tools.interface import finding
-    from ifgen_tools.interface.show import shown
+    from ifgen_tools.interface.definitions import shown
 
     if all_comments and no_comments:
         raise click.UsageError("--all-comments and --no-comments exclude each other")
@@ -116,17 +116,23 @@ def show(type_: str, all_comments: bool, no_comments: bool, include: tuple[Path,
 @click.option("--no-quotes", is_flag=True, help="Without quotes around the whole.")
 @options.transport_option
 @options.json_option
-def proto(type_: str, no_quotes: bool, transport: Any, as_json: bool) -> None:
+def proto(type_: str, no_quotes: bool, transport: TransportChoice, as_json: bool) -> None:
     """Print the fields and default values of an interface, as YAML to copy and change.
 
     That is a message, the request of a service, or the goal of an action.
     """
-    from ifgen_tools.interface.proto import prototype
-    from ifgen_tools.texts.formats import Style, as_yaml, plain
+    from ifgen_tools.session import activate
+    from ifgen_tools.texts.formats import as_yaml, plain
+    from ifgen_tools.texts.style import WHOLE
+    from ifgen_tools.types import interface_class
 
-    message = prototype(type_, transport)
+    activate(transport)
+    folder = type_.split("/")[1] if type_.count("/") == 2 else "msg"
+    cls = interface_class(type_, folder if folder in {"srv", "action"} else "msg")
+    part = {"srv": "Request", "action": "Goal"}.get(folder)
+    message = getattr(cls, part)() if part else cls()
     if as_json:
-        _print_json(plain(message, Style()))
+        _print_json(plain(message, WHOLE))
         return
     text = as_yaml(message)
     print(text if no_quotes else f'"{text}"')

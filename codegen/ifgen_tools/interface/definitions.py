@@ -1,9 +1,9 @@
-"""The lines of an interface's definition, as its file has them, with what each line means."""
+"""Definitions as `interface show` prints them: as their files have them, each field's message below it."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from typing import Literal, NamedTuple, TypeAlias
 
 from ifgen.definition.interfaces import Action, Constant, Field, Interface, Message, Registry, Service
 from ifgen.definition.spelling import spelled, spelled_value
@@ -16,6 +16,27 @@ from ifgen.reading.packages import IDL
 
 _SEPARATOR = "---"
 _PARSERS = {"msg": parser.parse_message, "srv": parser.parse_service, "action": parser.parse_action}
+
+
+Comments: TypeAlias = Literal["all", "own", "none"]
+"""Which comments to show, with blank lines: all, those of the interface that was asked for, or none."""
+
+
+def shown(described: Described, registry: Registry, comments: Comments) -> Iterator[str]:
+    """The lines, those of nested messages with a tab for each level."""
+    yield from _level(described, registry, comments, "")
+
+
+def _level(described: Described, registry: Registry, comments: Comments, indent: str) -> Iterator[str]:
+    below: Comments = "all" if comments == "all" else "none"
+    for line in lines_of(described, registry):
+        text = line.code if comments == "none" else line.text
+        if text:
+            yield indent + text
+        elif comments != "none":
+            yield ""
+        if line.nested is not None:
+            yield from _level(line.nested, registry, below, indent + "\t")
 
 
 class Line(NamedTuple):

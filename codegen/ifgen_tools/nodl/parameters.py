@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import ToolError
 
-from ifgen_tools.param.remote import RemoteParameters
+from ifgen_tools.param.client import json_value, remote_parameters
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import ParameterDescriptor, ParameterValue
@@ -49,15 +49,10 @@ class RunningParameter:
 def parameters_of(session: Session, node: str) -> tuple[RunningParameter, ...] | None:
     """The parameters of a node; None if it has no parameter services or they do not answer."""
     try:
-        remote = RemoteParameters(session, node, _PATIENCE)
-        names = remote.names()
-        descriptors = remote.descriptors(names)
-        values = remote.values(names)
+        with remote_parameters(session, node, _PATIENCE) as remote:
+            return tuple(_parameter(descriptor, value) for descriptor, value in remote.all())
     except ToolError:
         return None
-    if len(descriptors) != len(names):
-        return None
-    return tuple(_parameter(each, values.get(each.name)) for each in descriptors)
 
 
 def _parameter(descriptor: ParameterDescriptor, value: ParameterValue | None) -> RunningParameter:
@@ -66,20 +61,10 @@ def _parameter(descriptor: ParameterDescriptor, value: ParameterValue | None) ->
     return RunningParameter(
         name=descriptor.name,
         type=type_ or _TYPES.get(descriptor.type, "none"),
-        value=_plain(value) if value else None,
+        value=json_value(value) if value else None,
         description=descriptor.description,
         read_only=descriptor.read_only,
         additional_constraints=descriptor.additional_constraints,
         bounds=(limits[0].from_value, limits[0].to_value) if limits else None,
         step=limits[0].step if limits else 0,
     )
-
-
-def _plain(value: ParameterValue) -> Any:
-    """The value in plain Python; None if it is not set."""
-    from rclpy.parameter import parameter_value_to_python  # found once the transport has been chosen
-
-    found = parameter_value_to_python(value)
-    if not _TYPES.get(value.type, "").endswith("_array"):
-        return found
-    return [each[0] if isinstance(each, bytes) else each for each in found]

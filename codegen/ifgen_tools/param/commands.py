@@ -3,42 +3,34 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from functools import wraps
 from typing import Any, Final
 
 import click
 from ifgen.command_kit import options
+from ifgen.command_kit.options import Command
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
 from ifgen_tools.graph.lookup import hidden_nodes_option
+from ifgen_tools.param.options import (
+    DescribeOptions,
+    GetOptions,
+    ListOptions,
+    LoadOptions,
+    NodeOptions,
+    SetOptions,
+)
+from ifgen_tools.verbs import ManyCommand, ManyOption, takes
 
 # Late imports: each verb loads what it needs.
 
 _NUMBER: Final = re.compile(r"-\.?(\d|inf)")
-_PREFIXES: Final = "--param-prefixes"
-Command = Callable[..., Any]
 
 
 @click.group(cls=ToolGroup)
 def param() -> None:
     """Look at the parameters of running nodes, and set them."""
-
-
-class _ListCommand(click.Command):
-    """Lets `--param-prefixes` take all words after it up to the next option, as in ROS."""
-
-    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
-        """Write the option before each of its words, as click has it."""
-        words: list[str] = []
-        taking = False
-        for word in args:
-            if taking and not word.startswith("-") and words[-1] != _PREFIXES:
-                words.append(_PREFIXES)
-            taking = word == _PREFIXES or (taking and not word.startswith("-"))
-            words.append(word)
-        return super().parse_args(ctx, words)
 
 
 def _node_options(command: Command) -> Command:
@@ -57,9 +49,8 @@ def _timeout_option(command: Command) -> Command:
     """`--timeout SECONDS` of ROS, which is `spin_time` where that is not given."""
 
     @wraps(command)
-    def run(timeout: float | None, spin_time: float | None, **chosen: Any) -> int:
-        code: int = command(spin_time=timeout if spin_time is None else spin_time, **chosen)
-        return code
+    def run(timeout: float | None, spin_time: float | None, **values: Any) -> Any:
+        return command(spin_time=timeout if spin_time is None else spin_time, **values)
 
     return click.option(
         "--timeout",
@@ -79,20 +70,21 @@ def _patience_option(command: Command) -> Command:
     )(command)
 
 
-@param.command("list", cls=_ListCommand, epilog="Example: `ifgen param list /talker --param-type`")
+@param.command("list", cls=ManyCommand, epilog="Example: `ifgen param list /talker --param-type`")
 @click.argument("node", required=False, shell_complete=completion.nodes)
 @_node_options
 @click.option(
-    "--param-prefixes", multiple=True, metavar="PREFIX...", help="Only parameters below these prefixes."
+    "--param-prefixes", cls=ManyOption, metavar="PREFIX...", help="Only parameters below these prefixes."
 )
 @click.option("--param-type", "with_types", is_flag=True, help="The types as well.")
 @click.option("--filter", "pattern", metavar="REGEX", help="Only parameters whose names match.")
 @_patience_option
-def list_(**chosen: Any) -> int:
+@takes(ListOptions)
+def list_(chosen: ListOptions) -> int:
     """Print the parameters of a node, or of all nodes."""
-    from ifgen_tools.param.listing import list_parameters
+    from ifgen_tools.param.show import list_parameters
 
-    return list_parameters(**chosen)
+    return list_parameters(chosen)
 
 
 @param.command(epilog="Example: `ifgen param get /talker use_sim_time`")
@@ -102,11 +94,12 @@ def list_(**chosen: Any) -> int:
 @click.option("--hide-type", is_flag=True, help="Only the value.")
 @_patience_option
 @_timeout_option
-def get(**chosen: Any) -> int:
+@takes(GetOptions)
+def get(chosen: GetOptions) -> int:
     """Print the value of a parameter."""
-    from ifgen_tools.param.values import get_parameter
+    from ifgen_tools.param.show import get_parameter
 
-    return get_parameter(**chosen)
+    return get_parameter(chosen)
 
 
 @param.command(
@@ -126,17 +119,18 @@ def get(**chosen: Any) -> int:
 @click.option("--atomic", is_flag=True, help="All of them or none.")
 @_patience_option
 @_timeout_option
-def set_(pairs: tuple[str, ...], **chosen: Any) -> int:
+@takes(SetOptions)
+def set_(chosen: SetOptions) -> int:
     """Set parameters of a node. Values are YAML: 0.5, true, text, [1, 2]."""
-    from ifgen_tools.param.values import set_parameters
+    from ifgen_tools.param.set import set_parameters
 
     context = click.get_current_context()
-    for word in pairs:
+    for word in chosen.pairs:
         if word.startswith("-") and len(word) > 1 and not _NUMBER.match(word):
             raise click.NoSuchOption(word.partition("=")[0], ctx=context)
-    if len(pairs) % 2:
+    if len(chosen.pairs) % 2:
         raise click.UsageError("every name needs a value after it: NAME VALUE [NAME VALUE]...", context)
-    return set_parameters(pairs=list(zip(pairs[::2], pairs[1::2], strict=True)), **chosen)
+    return set_parameters(chosen)
 
 
 @param.command(epilog="Example: `ifgen param delete /talker speed`")
@@ -145,11 +139,12 @@ def set_(pairs: tuple[str, ...], **chosen: Any) -> int:
 @_node_options
 @_patience_option
 @_timeout_option
-def delete(**chosen: Any) -> int:
+@takes(GetOptions)
+def delete(chosen: GetOptions) -> int:
     """Delete a parameter that the node allows to be deleted."""
-    from ifgen_tools.param.values import delete_parameter
+    from ifgen_tools.param.set import delete_parameter
 
-    return delete_parameter(**chosen)
+    return delete_parameter(chosen)
 
 
 @param.command(epilog="Example: `ifgen param describe /talker use_sim_time`")
@@ -158,11 +153,12 @@ def delete(**chosen: Any) -> int:
 @_node_options
 @_patience_option
 @_timeout_option
-def describe(**chosen: Any) -> int:
+@takes(DescribeOptions)
+def describe(chosen: DescribeOptions) -> int:
     """Print the types, descriptions and limits of parameters."""
-    from ifgen_tools.param.describing import describe_parameters
+    from ifgen_tools.param.show import describe_parameters
 
-    return describe_parameters(**chosen)
+    return describe_parameters(chosen)
 
 
 @param.command(epilog="Example: `ifgen param dump /talker > talker.yaml`")
@@ -170,11 +166,12 @@ def describe(**chosen: Any) -> int:
 @_node_options
 @_patience_option
 @_timeout_option
-def dump(**chosen: Any) -> int:
+@takes(NodeOptions)
+def dump(chosen: NodeOptions) -> int:
     """Print all parameters of a node as a YAML file, for `ifgen param load` and --params-file."""
-    from ifgen_tools.param.files import dump_parameters
+    from ifgen_tools.param.show import dump_parameters
 
-    return dump_parameters(**chosen)
+    return dump_parameters(chosen)
 
 
 @param.command(epilog="Example: `ifgen param load /talker talker.yaml`")
@@ -184,8 +181,9 @@ def dump(**chosen: Any) -> int:
 @click.option("--no-use-wildcard", is_flag=True, help="Leave out the parameters of `/**` in the file.")
 @_patience_option
 @_timeout_option
-def load(**chosen: Any) -> int:
+@takes(LoadOptions)
+def load(chosen: LoadOptions) -> int:
     """Set the parameters of a node from a YAML file."""
-    from ifgen_tools.param.files import load_parameters
+    from ifgen_tools.param.set import load_parameters
 
-    return load_parameters(**chosen)
+    return load_parameters(chosen)

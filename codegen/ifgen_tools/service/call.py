@@ -17,33 +17,26 @@ from ifgen_tools.graph.reading import services
 from ifgen_tools.session import open_session
 from ifgen_tools.texts.formats import as_json
 from ifgen_tools.texts.set_fields import SetStamp, read_yaml, set_fields
+from ifgen_tools.verbs import CallOptions
 
 if TYPE_CHECKING:
-    from ifgen_tools.session import Session, TransportChoice
+    from ifgen_tools.session import Session
 
 
-def call(
-    *,
-    name: str,
-    type_name: str,
-    values: str | None = None,
-    from_stdin: bool = False,
-    rate: float | None = None,
-    transport: TransportChoice = "auto",
-    in_json: bool = False,
-) -> None:
-    """Call a service, with `rate` [Hz] until it is interrupted, and print requests and responses."""
-    type_name = full_type_name(type_name, "service")
-    given = read_yaml(values_or_stdin(values, from_stdin), "the values of the request")
-    with open_session(transport) as session:
-        name = session.node.resolve_service_name(name)
+def call(chosen: CallOptions) -> None:
+    """Call a service, with a rate until it is interrupted, and print requests and responses."""
+    type_name = full_type_name(chosen.type_name, "service")
+    values = read_yaml(values_or_stdin(chosen.values, chosen.from_stdin), "the values of the request")
+    with open_session(chosen.transport) as session:
+        name = session.node.resolve_service_name(chosen.name)
         known = known_class(type_name, "service")
         if isinstance(known, type):
-            set_fields(known.Request(), given)  # a mistake in it is said before anybody is waited for
+            set_fields(known.Request(), values)  # a mistake in it is said before anybody is waited for
         wait_for_server(session, "service", name, type_name, lambda: services(session.node))
         cls = class_on_the_wire(session, "service", name, known)
         request = cls.Request()
-        _Caller(session, name, cls, in_json).call(request, set_fields(request, given), rate)
+        caller = _Caller(session, name, cls, chosen.as_json)
+        caller.call(request, set_fields(request, values), chosen.rate)
 
 
 class _Caller:

@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
 
 import click
 from ifgen.command_kit import options
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
+from ifgen_tools.texts.style import Style, style_options
+from ifgen_tools.verbs import CallOptions, FindOptions, ListOptions, NameOptions, SessionOptions, takes
 
 # Late imports: each verb loads what it needs.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EchoOptions(SessionOptions):
+    """The options of `service echo`."""
+
+    name: str
+    type_name: str | None
+    style: Style
+    csv: bool = False
 
 
 def _hidden(command: options.Command) -> options.Command:
@@ -35,11 +47,12 @@ def service(context: click.Context, include_hidden: bool) -> None:
 @click.option("-t", "--show-types", is_flag=True, help="The types as well.")
 @click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many there are.")
 @options.json_option
-def list_(**chosen: Any) -> None:
+@takes(ListOptions)
+def list_(chosen: ListOptions) -> None:
     """Print the names of all services."""
-    from ifgen_tools.service import graph
+    from ifgen_tools.service.list import list_services
 
-    graph.list_services(**chosen)
+    list_services(chosen)
 
 
 @service.command("type", epilog="Example: ifgen service type /talker/get_parameters")
@@ -47,11 +60,12 @@ def list_(**chosen: Any) -> None:
 @options.graph_options
 @options.use_sim_time_option
 @options.json_option
-def type_(**chosen: Any) -> None:
+@takes(NameOptions)
+def type_(chosen: NameOptions) -> None:
     """Print the type of a service."""
-    from ifgen_tools.service import graph
+    from ifgen_tools.service.list import print_type
 
-    graph.print_type(**chosen)
+    print_type(chosen)
 
 
 @service.command(epilog="Example: ifgen service find rcl_interfaces/srv/GetParameters")
@@ -61,11 +75,12 @@ def type_(**chosen: Any) -> None:
 @_hidden
 @click.option("-c", "--count-services", "--count", "count", is_flag=True, help="Only how many there are.")
 @options.json_option
-def find(**chosen: Any) -> None:
+@takes(FindOptions)
+def find(chosen: FindOptions) -> None:
     """Print the services of a type."""
-    from ifgen_tools.service import graph
+    from ifgen_tools.service.list import find_services
 
-    graph.find_services(**chosen)
+    find_services(chosen)
 
 
 @service.command(epilog="Example: ifgen service info /talker/get_parameters")
@@ -74,11 +89,12 @@ def find(**chosen: Any) -> None:
 @options.graph_options
 @options.use_sim_time_option
 @options.json_option
-def info(**chosen: Any) -> None:
+@takes(NameOptions)
+def info(chosen: NameOptions) -> None:
     """Print the type of a service, and how many nodes call and serve it."""
-    from ifgen_tools.service import graph
+    from ifgen_tools.service.list import service_info
 
-    graph.service_info(**chosen)
+    service_info(chosen)
 
 
 @service.command(epilog='Example: ifgen service call /add example_interfaces/srv/AddTwoInts "{a: 1, b: 2}"')
@@ -91,7 +107,8 @@ def info(**chosen: Any) -> None:
 )
 @options.transport_option
 @options.json_option
-def call(as_json: bool, **chosen: Any) -> None:
+@takes(CallOptions)
+def call(chosen: CallOptions) -> None:
     """Call a service, and print the response.
 
     VALUES is YAML. Fields that are not in it keep their default values; `auto` for a header and `now` for a
@@ -99,46 +116,23 @@ def call(as_json: bool, **chosen: Any) -> None:
     """
     from ifgen_tools.service.call import call
 
-    call(in_json=as_json, **chosen)
+    call(chosen)
 
 
 @service.command(epilog="Example: ifgen service echo /add --flow-style")
 @click.argument("name", metavar="SERVICE", shell_complete=completion.services)
 @click.argument("type_name", metavar="[TYPE]", required=False, shell_complete=completion.service_types)
-@click.option("--csv", "as_csv", is_flag=True, help="All values with commas between them.")
-@click.option("-f", "--full-length", is_flag=True, help="Do not cut arrays and strings.")
-@click.option(
-    "-l",
-    "--truncate-length",
-    metavar="N",
-    type=click.IntRange(min=0),
-    default=128,
-    help="Cut arrays and strings after this length. The default is 128.",
-)
-@click.option("--no-arr", is_flag=True, help="No arrays.")
-@click.option("--no-str", is_flag=True, help="No strings.")
-@click.option("--flow-style", is_flag=True, help="Lists in one line.")
+@click.option("--csv", is_flag=True, help="All values with commas between them.")
+@style_options
 @options.transport_option
 @options.json_option
-def echo(
-    as_csv: bool,
-    full_length: bool,
-    truncate_length: int,
-    no_arr: bool,
-    no_str: bool,
-    flow_style: bool,
-    as_json: bool,
-    **chosen: Any,
-) -> None:
+@takes(EchoOptions)
+def echo(chosen: EchoOptions) -> None:
     """Print the requests and responses of a service as they are sent and received.
 
     Who serves or calls it says so while introspection is on: `configure_introspection(...)` of its server or
     client in rclpy. There are no values in the events while the state is METADATA.
     """
     from ifgen_tools.service.echo import echo
-    from ifgen_tools.texts.formats import Style
 
-    if as_csv and as_json:
-        raise click.UsageError("--csv and --json exclude each other")
-    style = Style(None if full_length else truncate_length, no_arr, no_str, flow_style)
-    echo(form="csv" if as_csv else "json" if as_json else "yaml", style=style, **chosen)
+    echo(chosen)

@@ -5,14 +5,17 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any, Final
 
+import click
+
 from ifgen_tools.calling import class_on_the_wire, full_type_name, known_class
 from ifgen_tools.graph.reading import services
-from ifgen_tools.service.graph import pick_service
+from ifgen_tools.service.list import pick_service
 from ifgen_tools.session import open_session
-from ifgen_tools.texts.formats import Style, as_csv, as_json, plain, written
+from ifgen_tools.texts.formats import as_csv, as_json, plain, written
 
 if TYPE_CHECKING:
-    from ifgen_tools.session import Session, TransportChoice
+    from ifgen_tools.service.commands import EchoOptions
+    from ifgen_tools.session import Session
 
 # Late imports: rclpy is found once the transport has been chosen.
 
@@ -20,18 +23,12 @@ _EVENTS: Final = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE
 """The names of service_msgs/msg/ServiceEventInfo."""
 
 
-def echo(
-    *,
-    name: str,
-    type_name: str | None,
-    style: Style,
-    form: str = "yaml",
-    transport: TransportChoice = "auto",
-    most: int | None = None,
-) -> None:
-    """Print the events of a service as `yaml`, `csv` or `json`: the first `most`, or without end."""
-    with open_session(transport) as session:
-        service, cls = _service(session, name, type_name)
+def echo(chosen: EchoOptions, most: int | None = None) -> None:
+    """Print the events of a service: the first `most`, or without end."""
+    if chosen.csv and chosen.as_json:
+        raise click.UsageError("--csv and --json exclude each other")
+    with open_session(chosen.transport) as session:
+        service, cls = _service(session, chosen.name, chosen.type_name)
         from rclpy.qos import qos_profile_services_default
 
         events: list[Any] = []
@@ -47,7 +44,7 @@ def echo(
         shown = 0
         while most is None or shown < most:
             session.wait_for(lambda: bool(events))
-            print(_text(events.pop(0), style, form), end="", flush=True)
+            print(_text(events.pop(0), chosen), end="", flush=True)
             shown += 1
 
 
@@ -65,12 +62,12 @@ def _service(session: Session, name: str, type_name: str | None) -> tuple[str, t
     return service, class_on_the_wire(session, "service", service, known)
 
 
-def _text(event: Any, style: Style, form: str) -> str:
-    if form == "json":
+def _text(event: Any, chosen: EchoOptions) -> str:
+    if chosen.as_json:
         return f"{as_json(event)}\n"
-    if form == "csv":
-        return f"{as_csv(event, style)}\n"
-    document = plain(event, style)
+    if chosen.csv:
+        return f"{as_csv(event, chosen.style)}\n"
+    document = plain(event, chosen.style)
     number = event.info.event_type
     document["info"]["event_type"] = _EVENTS[number] if number < len(_EVENTS) else number
-    return f"{written(document, style)}---\n"
+    return f"{written(document, chosen.style)}---\n"

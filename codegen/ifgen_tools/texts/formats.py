@@ -12,37 +12,20 @@ import re
 import sys
 from array import array
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
 import yaml
 from ifgen_runtime.field_types import Field, fields_of
 
+from ifgen_tools.texts.style import WHOLE, Style
+
 _PLAIN: Final = re.compile(r"[A-Za-z_/]([\w/. -]*[\w/.-])?", re.ASCII)
 _RESERVED: Final = frozenset({"yes", "no", "true", "false", "on", "off", "null"})
 """Words that YAML takes for something else than text."""
 
 
-@dataclass(frozen=True, slots=True)
-class Style:
-    """How a message is shown.
-
-    `longest` is the length after which arrays, strings and bytes are cut (None: never). `no_arr` and `no_str`
-    put the type and the length in place of arrays and strings. `flow` writes lists in one line.
-    """
-
-    longest: int | None = None
-    no_arr: bool = False
-    no_str: bool = False
-    flow: bool = False
-
-    def fits(self, value: Any) -> bool:
-        """True if a text or an array is not cut."""
-        return self.longest is None or len(value) <= self.longest
-
-
-def as_yaml(value: Any, style: Style = Style()) -> str:
+def as_yaml(value: Any, style: Style = WHOLE) -> str:
     """A message, or a value that `plain` takes, as YAML that ends with a line break."""
     return written(plain(value, style), style)
 
@@ -209,7 +192,7 @@ def as_json(value: Any, info: Any = None) -> str:
     Floats that JSON cannot hold become "NaN", "Infinity" and "-Infinity", and bytes a text of one character
     each.
     """
-    document = plain(value, Style())
+    document = plain(value, WHOLE)
     if info is not None:
         document = {"info": dict(info), "message": document}
     try:

@@ -2,13 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
 
 import click
 from ifgen.command_kit import options
 from ifgen.command_kit.tool import ToolCommand
 
+from ifgen_tools.verbs import SessionOptions, takes
+
 # Late imports: each view loads what it needs.
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TopOptions(SessionOptions):
+    """The options of `ifgen top`; the period is in s."""
+
+    once: bool
+    web: bool
+    port: int
+    period: float
+    view: str
+    include_hidden: bool
+    no_subscribe: bool
 
 
 @click.command(
@@ -48,7 +63,8 @@ from ifgen.command_kit.tool import ToolCommand
     help="Subscribe to nothing: no bandwidth, and rates only where publishers tell them.",
 )
 @options.no_daemon_option
-def top(**chosen: Any) -> int:
+@takes(TopOptions)
+def top(chosen: TopOptions) -> int:
     """Watch nodes, topics, subscriptions and executors as they run.
 
     It changes nothing, and subscribes only to the topics that are on the screen. How full queues are, what
@@ -58,6 +74,6 @@ def top(**chosen: Any) -> int:
     Keys: arrows to move and to choose the column, s to sort by it, tab for the next table, / to filter,
     p for the parameters of a node, ? for all of them, q to quit.
     """
-    from ifgen_tools.top import run
+    from ifgen_tools.top.run import run
 
-    return run.run(**chosen)
+    return run(chosen)

@@ -6,14 +6,15 @@ import json
 import os
 import sys
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from ifgen.signals import Terminated
 
 from ifgen_tools.session import open_session
 
 if TYPE_CHECKING:
-    from ifgen_tools.top.gathering import Gatherer
+    from ifgen_tools.top.collector import Collector
+    from ifgen_tools.top.commands import TopOptions
 
 # Late imports: only one of the views runs, and the page needs no rich.
 
@@ -21,39 +22,28 @@ _WIDTH = 120
 """Characters of a line where there is no terminal that says."""
 
 
-def run(
-    *,
-    transport: Literal["local", "rclpy", "auto"],
-    once: bool,
-    as_json: bool,
-    web: bool,
-    port: int,
-    period: float,
-    view: str,
-    include_hidden: bool,
-    no_subscribe: bool,
-) -> int:
+def run(chosen: TopOptions) -> int:
     """Watch; returns the exit code."""
-    from ifgen_tools.top.gathering import Gatherer
+    from ifgen_tools.top.collector import Collector
 
-    with open_session(transport) as session:
-        is_screen = not (web or as_json or once) and _has_terminal()
+    with open_session(chosen.transport) as session:
+        is_screen = not (chosen.web or chosen.as_json or chosen.once) and _has_terminal()
         notes: list[str] = []
         if is_screen:
             session.lookout.say = notes.append
-        gatherer = Gatherer(session, include_hidden=include_hidden, listens=not no_subscribe)
+        collector = Collector(session, include_hidden=chosen.include_hidden, listens=not chosen.no_subscribe)
         session.discover()
-        if web:
+        if chosen.web:
             from ifgen_tools.top.web.page import serve
 
-            return _until_interrupted(lambda: serve(gatherer, port, period))
-        if as_json:
-            return _print_json(gatherer, period, once=once)
+            return _until_interrupted(lambda: serve(collector, chosen.port, chosen.period))
+        if chosen.as_json:
+            return _print_json(collector, chosen.period, once=chosen.once)
         if not is_screen:
-            return _print_tables(gatherer, period)
+            return _print_tables(collector, chosen.period)
         from ifgen_tools.top.screen.live import watch
 
-        return _until_interrupted(lambda: watch(gatherer, period, view, notes))
+        return _until_interrupted(lambda: watch(collector, chosen.period, chosen.view, notes))
 
 
 def _until_interrupted(show: Callable[[], None]) -> int:
@@ -70,30 +60,30 @@ def _has_terminal() -> bool:
     return sys.stdin.isatty() and sys.stdout.isatty() and os.environ.get("TERM", "dumb") != "dumb"
 
 
-def _print_json(gatherer: Gatherer, period: float, *, once: bool) -> int:
+def _print_json(collector: Collector, period: float, *, once: bool) -> int:
     """One line for each look, or for the first with rates."""
     from ifgen_tools.top.snapshot import as_json
 
-    gatherer.want(each.name for each in gatherer.step().topics)
-    gatherer.step()
+    collector.want(each.name for each in collector.step().topics)
+    collector.step()
     while True:
-        gatherer.spin(period)
-        snapshot = gatherer.step()
+        collector.spin(period)
+        snapshot = collector.step()
         print(json.dumps(as_json(snapshot), allow_nan=False), flush=True)
         if once:
             return 0
-        gatherer.want(each.name for each in snapshot.topics)
+        collector.want(each.name for each in snapshot.topics)
 
 
-def _print_tables(gatherer: Gatherer, period: float) -> int:
+def _print_tables(collector: Collector, period: float) -> int:
     from rich.console import Console
 
     from ifgen_tools.top.screen.frame import tables
 
-    gatherer.want(each.name for each in gatherer.step().topics)
-    gatherer.step()
-    gatherer.spin(period)
-    snapshot = gatherer.step()
+    collector.want(each.name for each in collector.step().topics)
+    collector.step()
+    collector.spin(period)
+    snapshot = collector.step()
     console = Console(file=sys.stdout, highlight=False, markup=False)
     width = console.width if sys.stdout.isatty() or os.environ.get("COLUMNS") else _WIDTH
     console.print(tables(snapshot, width), soft_wrap=True)

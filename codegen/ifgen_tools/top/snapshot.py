@@ -92,6 +92,15 @@ class Snapshot:
     silent: tuple[str, ...] = ()
 
 
+@dataclass(frozen=True, slots=True)
+class Parameters:
+    """The parameters of a node as (name, value), or the reason why there are none."""
+
+    node: str
+    values: tuple[tuple[str, str], ...] = ()
+    problem: str = ""
+
+
 def as_json(snapshot: Snapshot) -> Mapping[str, Any]:
     """The snapshot as values of JSON."""
     return asdict(snapshot)

@@ -10,22 +10,14 @@ from ifgen.command_kit import options
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion, qos
-from ifgen_tools.topic.options import (
-    EchoOptions,
-    FindOptions,
-    HzOptions,
-    InfoOptions,
-    ListOptions,
-    PubOptions,
-    RateOptions,
-    TopicOptions,
-)
-from ifgen_tools.verbs import takes
+from ifgen_tools.texts.style import style_options
+from ifgen_tools.topic.options import EchoOptions, HzOptions, PubOptions, RateOptions
+from ifgen_tools.verbs import FindOptions, ListOptions, NameOptions, takes
 
 # Late imports: each verb loads what it needs.
 
 _POSITIVE: Final = click.FloatRange(min=0, min_open=True)
-_TOPIC: Final = click.argument("topic_name", metavar="TOPIC", shell_complete=completion.topics)
+_TOPIC: Final = click.argument("name", metavar="TOPIC", shell_complete=completion.topics)
 
 
 def _window(default: int) -> Callable[[options.Command], options.Command]:
@@ -47,7 +39,7 @@ def topic() -> None:
 @topic.command("list", epilog="Example: ifgen topic list -t")
 @options.hidden_topics_option
 @click.option("-t", "--show-types", is_flag=True, help="The types as well.")
-@click.option("-c", "--count-topics", "--count", is_flag=True, help="Only how many there are.")
+@click.option("-c", "--count-topics", "--count", "count", is_flag=True, help="Only how many there are.")
 @click.option("-v", "--verbose", is_flag=True, help="The numbers of publishers and subscribers as well.")
 @options.json_option
 @options.use_sim_time_option
@@ -66,8 +58,8 @@ def list_(chosen: ListOptions) -> int:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-@takes(InfoOptions)
-def info(chosen: InfoOptions) -> int:
+@takes(NameOptions)
+def info(chosen: NameOptions) -> int:
     """Print the type of a topic, and who publishes and subscribes."""
     from ifgen_tools.topic.list import info as run
 
@@ -79,8 +71,8 @@ def info(chosen: InfoOptions) -> int:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-@takes(TopicOptions)
-def type_(chosen: TopicOptions) -> int:
+@takes(NameOptions)
+def type_(chosen: NameOptions) -> int:
     """Print the type of a topic."""
     from ifgen_tools.topic.list import type_ as run
 
@@ -88,8 +80,8 @@ def type_(chosen: TopicOptions) -> int:
 
 
 @topic.command(epilog="Example: ifgen topic find std_msgs/msg/String")
-@click.argument("topic_type", metavar="TYPE", shell_complete=completion.message_types)
-@click.option("-c", "--count-topics", is_flag=True, help="Only how many there are.")
+@click.argument("type_name", metavar="TYPE", shell_complete=completion.message_types)
+@click.option("-c", "--count-topics", "count", is_flag=True, help="Only how many there are.")
 @options.hidden_topics_option
 @options.json_option
 @options.use_sim_time_option
@@ -123,18 +115,7 @@ def find(chosen: FindOptions) -> int:
 @click.option("--csv", is_flag=True, help="All values with commas between them.")
 @click.option("--json", "as_json", is_flag=True, help="Each message as one line of JSON.")
 @click.option("--raw", is_flag=True, help="The serialized bytes.")
-@click.option("-f", "--full-length", is_flag=True, help="Long arrays, strings and bytes as a whole.")
-@click.option(
-    "-l",
-    "--truncate-length",
-    type=click.IntRange(min=0),
-    default=128,
-    metavar="N",
-    help="The length after which these are cut, 128 by default.",
-)
-@click.option("--no-arr", is_flag=True, help="No arrays: their type and length in their place.")
-@click.option("--no-str", is_flag=True, help="No strings: their length in their place.")
-@click.option("--flow-style", is_flag=True, help="Lists in one line.")
+@style_options
 @click.option("-i", "--include-message-info", is_flag=True, help="Times and numbers of each message as well.")
 @click.option("--no-lost-messages", is_flag=True, help="Do not say when a message is lost.")
 @click.option(
@@ -207,7 +188,7 @@ def pub(chosen: PubOptions) -> int:
 
 
 @topic.command(epilog="Example: ifgen topic hz /imu /scan --window 100")
-@click.argument("topic_names", metavar="TOPIC...", nargs=-1, required=True, shell_complete=completion.topics)
+@click.argument("names", metavar="TOPIC...", nargs=-1, required=True, shell_complete=completion.topics)
 @_window(10_000)
 @click.option(
     "--filter",

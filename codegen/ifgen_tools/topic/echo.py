@@ -11,7 +11,7 @@ import yaml
 from ifgen.command_kit.tool import ToolError
 
 from ifgen_tools.session import open_session
-from ifgen_tools.texts.formats import Style, as_csv, as_json, as_yaml
+from ifgen_tools.texts.formats import as_csv, as_json, as_yaml
 from ifgen_tools.texts.select import condition, selector
 from ifgen_tools.topic import topics
 from ifgen_tools.topic.options import EchoOptions
@@ -35,7 +35,7 @@ def echo(chosen: EchoOptions) -> int:
     wanted = condition(chosen.filter_expression)
     with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
         is_named = chosen.message_type is not None
-        topic = topics.find_topic(session, chosen.topic_name, chosen.spin_time, must_exist=not is_named)
+        topic = topics.find_topic(session, chosen.name, chosen.spin_time, must_exist=not is_named)
         cls = topics.class_on(session, topic, chosen.message_type)
         topics.refuse_other_types(session, topic, cls)
         select = selector(cls, chosen.fields[0]) if chosen.fields else None
@@ -66,12 +66,6 @@ def _printer(
     chosen: EchoOptions, select: Callable[[Any], Any] | None, wanted: Callable[[Any], bool]
 ) -> Callable[[Any, Any], bool]:
     """A function that prints a message with its info, and returns whether it did."""
-    style = Style(
-        None if chosen.full_length else chosen.truncate_length,
-        chosen.no_arr,
-        chosen.no_str,
-        chosen.flow_style,
-    )
 
     def show(message: Any, info: Any) -> bool:
         value = message
@@ -82,14 +76,14 @@ def _printer(
                 raise ToolError("a message has come in which the list of --field is shorter") from None
         if not wanted(value):
             return False
-        sys.stdout.write(_text(value, info, chosen, style))
+        sys.stdout.write(_text(value, info, chosen))
         sys.stdout.flush()
         return True
 
     return show
 
 
-def _text(value: Any, info: Any, chosen: EchoOptions, style: Style) -> str:
+def _text(value: Any, info: Any, chosen: EchoOptions) -> str:
     with_info = chosen.include_message_info
     if chosen.as_json:
         return as_json(value, info if with_info else None) + "\n"
@@ -98,6 +92,6 @@ def _text(value: Any, info: Any, chosen: EchoOptions, style: Style) -> str:
         return f"{before}{value}\n---\n"
     if chosen.csv:
         before = "".join(f"{part}," for part in info.values()) if with_info else ""
-        return f"{before}{as_csv(value, style)}\n"
+        return f"{before}{as_csv(value, chosen.style)}\n"
     before = f"{yaml.safe_dump(dict(info))}---\n" if with_info else ""
-    return f"{before}{as_yaml(value, style)}---\n"
+    return f"{before}{as_yaml(value, chosen.style)}---\n"

@@ -11,9 +11,9 @@ from ifgen.command_kit.tool import Absent, did_you_mean
 
 from ifgen_tools.graph.reading import full_name, is_hidden
 from ifgen_tools.session import open_session
-from ifgen_tools.topic.options import FindOptions, InfoOptions, ListOptions, TopicOptions
 from ifgen_tools.topic.topics import find_topic
 from ifgen_tools.types import message_name
+from ifgen_tools.verbs import FindOptions, ListOptions, NameOptions
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -35,7 +35,7 @@ def list_topics(chosen: ListOptions) -> int:
     with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
         session.discover(chosen.spin_time)
         found = topics(session.node, chosen.include_hidden)
-    if chosen.count_topics:
+    if chosen.count:
         print(len(found))
     elif chosen.as_json:
         print(json.dumps([asdict(each) for each in found], indent=2))
@@ -66,10 +66,10 @@ def _counted(found: Iterable[Topic], role: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def info(chosen: InfoOptions) -> int:
+def info(chosen: NameOptions) -> int:
     """Print the type of a topic, and who is on it."""
     with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
-        node, name = session.node, find_topic(session, chosen.topic_name, chosen.spin_time)
+        node, name = session.node, find_topic(session, chosen.name, chosen.spin_time)
         types = _types(node, name)
         sides = {
             "Publisher": node.get_publishers_info_by_topic(name),
@@ -109,10 +109,10 @@ def _plain(endpoint: TopicEndpointInfo) -> dict[str, Any]:
     }
 
 
-def type_(chosen: TopicOptions) -> int:
+def type_(chosen: NameOptions) -> int:
     """Print the types of a topic."""
     with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
-        types = _types(session.node, find_topic(session, chosen.topic_name, chosen.spin_time))
+        types = _types(session.node, find_topic(session, chosen.name, chosen.spin_time))
     print(json.dumps(types) if chosen.as_json else "\n".join(types))
     return 0
 
@@ -121,9 +121,9 @@ def find(chosen: FindOptions) -> int:
     """Print the topics of a type."""
     with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
         session.discover(chosen.spin_time)
-        wanted = message_name(chosen.topic_type)
+        wanted = message_name(chosen.type_name)
         found = [each.name for each in topics(session.node, chosen.include_hidden) if wanted in each.types]
-    if chosen.count_topics:
+    if chosen.count:
         print(len(found))
     elif chosen.as_json:
         print(json.dumps(found))

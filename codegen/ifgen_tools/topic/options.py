@@ -5,46 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ifgen_tools.qos import QosChoice
+from ifgen_tools.texts.style import Style
 from ifgen_tools.verbs import GraphOptions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ListOptions(GraphOptions):
-    """The options of `topic list`."""
-
-    include_hidden: bool = False
-    show_types: bool = False
-    count_topics: bool = False
-    verbose: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TopicOptions(GraphOptions):
-    """The options of a verb that is about one topic."""
-
-    topic_name: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class InfoOptions(TopicOptions):
-    """The options of `topic info`."""
-
-    verbose: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FindOptions(GraphOptions):
-    """The options of `topic find`."""
-
-    topic_type: str
-    include_hidden: bool = False
-    count_topics: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EchoOptions(TopicOptions):
+class EchoOptions(GraphOptions):
     """The options of `topic echo`."""
 
+    name: str
     message_type: str | None
     once: bool
     timeout: float | None
@@ -52,20 +21,17 @@ class EchoOptions(TopicOptions):
     filter_expression: str | None
     csv: bool
     raw: bool
-    full_length: bool
-    truncate_length: int
-    no_arr: bool
-    no_str: bool
-    flow_style: bool
+    style: Style
     include_message_info: bool
     no_lost_messages: bool
     qos: QosChoice
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PubOptions(TopicOptions):
+class PubOptions(GraphOptions):
     """The options of `topic pub`."""
 
+    name: str
     message_type: str
     values: str | None
     stdin: bool
@@ -81,9 +47,10 @@ class PubOptions(TopicOptions):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RateOptions(TopicOptions):
+class RateOptions(GraphOptions):
     """The options of `topic bw` and `topic delay`."""
 
+    name: str
     window: int
 
 
@@ -91,7 +58,7 @@ class RateOptions(TopicOptions):
 class HzOptions(GraphOptions):
     """The options of `topic hz`."""
 
-    topic_names: tuple[str, ...]
+    names: tuple[str, ...]
     window: int
     filter_expression: str | None
     wall_time: bool

@@ -38,7 +38,7 @@ def pub(chosen: PubOptions) -> int:
         raise click.UsageError("--max-wait-time-secs needs --wait-matching-subscriptions, --once or --times")
     values = read_yaml(sys.stdin.read() if chosen.stdin else chosen.values or "{}")
     with open_session(chosen.transport, name=chosen.node_name, use_sim_time=chosen.use_sim_time) as session:
-        topic = topics.find_topic(session, chosen.topic_name, chosen.spin_time, must_exist=False)
+        topic = topics.find_topic(session, chosen.name, chosen.spin_time, must_exist=False)
         cls = topics.class_on(session, topic, chosen.message_type)
         message = cls()
         stamps = set_fields(message, values)

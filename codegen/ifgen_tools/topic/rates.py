@@ -85,7 +85,7 @@ def hz(chosen: HzOptions) -> int:
             if moment and not rate.add(moment):
                 print("time has reset, resetting counters", flush=True)
 
-        names = [topics.find_topic(session, name, chosen.spin_time) for name in chosen.topic_names]
+        names = [topics.find_topic(session, name, chosen.spin_time) for name in chosen.names]
         for name in dict.fromkeys(names):
             rate = rates[name] = Rate(chosen.window)
             cls = topics.wait_for_topic(session, name)
@@ -129,7 +129,7 @@ def bw(chosen: RateOptions) -> int:
     """Print the bandwidth every second."""
     arrivals: deque[_Arrival] = deque(maxlen=chosen.window)
     with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
-        topic = topics.find_topic(session, chosen.topic_name, chosen.spin_time)
+        topic = topics.find_topic(session, chosen.name, chosen.spin_time)
 
         def hear(data: bytes) -> None:
             arrivals.append(_Arrival(session.now(), len(data)))
@@ -172,7 +172,7 @@ def delay(chosen: RateOptions) -> int:
     delays: deque[float] = deque(maxlen=chosen.window)  # [s]
     fresh: list[bool] = []
     with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
-        topic = topics.find_topic(session, chosen.topic_name, chosen.spin_time)
+        topic = topics.find_topic(session, chosen.name, chosen.spin_time)
 
         def hear(message: Any) -> None:
             now, stamp = session.now(), message.header.stamp

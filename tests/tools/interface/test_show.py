@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from ifgen.pipeline.lookup import find_types
 from ifgen.reading.search_path import SearchPath
-from ifgen_tools.interface.show import shown
+from ifgen_tools.interface.definitions import shown
 
 from tests.cli.conftest import Run, write
 

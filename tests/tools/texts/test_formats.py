@@ -14,7 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from ifgen.dynamic import class_from_text
 from ifgen_tools.texts import formats
-from ifgen_tools.texts.formats import Style, as_csv, as_json, as_yaml
+from ifgen_tools.texts.formats import as_csv, as_json, as_yaml
+from ifgen_tools.texts.style import Style
 from sensor_msgs.msg import JointState
 
 DEFINITION = """\

@@ -6,10 +6,9 @@ from io import StringIO
 from pathlib import Path
 
 import pytest
-from ifgen_tools.top.parameters import Parameters
 from ifgen_tools.top.screen.frame import frame, tables
 from ifgen_tools.top.screen.view import View
-from ifgen_tools.top.snapshot import Snapshot
+from ifgen_tools.top.snapshot import Parameters, Snapshot
 from rich.console import Console
 
 from tests.tools.top.samples import ROBOT

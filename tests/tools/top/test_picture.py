@@ -9,8 +9,8 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from ifgen_tools.top.snapshot import ServiceRow, TopicRow
+from ifgen_tools.top.web.page import tree
 from ifgen_tools.top.web.picture import distances, pictures, structure
-from ifgen_tools.top.web.tree import tree
 
 from tests.tools.top.samples import ROBOT
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from ifgen_tools.top.screen.keys import keys
-from ifgen_tools.top.screen.texts import amount, duration, shortened
+from ifgen_tools.top.screen.tables import amount, duration, shortened
+from ifgen_tools.top.screen.terminal import keys
 from ifgen_tools.top.screen.view import View
 from ifgen_tools.top.snapshot import Snapshot, TopicRow
 

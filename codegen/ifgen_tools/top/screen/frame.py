@@ -9,8 +9,7 @@ from typing import Any, Final
 from rich.cells import set_cell_size
 from rich.text import Text
 
-from ifgen_tools.top.screen.tables import TABLES, Column, ordered, widths
-from ifgen_tools.top.screen.texts import percent, shortened
+from ifgen_tools.top.screen.tables import TABLES, Column, ordered, percent, shortened, widths
 from ifgen_tools.top.screen.view import FRAME, View
 from ifgen_tools.top.snapshot import Snapshot
 

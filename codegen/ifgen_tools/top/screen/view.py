@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from ifgen_tools.top.parameters import Parameters
 from ifgen_tools.top.screen.tables import TABLES, Table, ordered
-from ifgen_tools.top.snapshot import Snapshot
+from ifgen_tools.top.snapshot import Parameters, Snapshot
 
 FRAME: Final = 4
 """Lines that are not rows: title, tables, columns and keys."""

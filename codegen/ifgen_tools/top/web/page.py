@@ -1,8 +1,11 @@
-"""Gathers for the pages that are open, and tells them."""
+"""The contents of the pages that are open: snapshots, pictures, and messages as trees of JSON."""
 
 from __future__ import annotations
 
+import math
 import time
+from collections.abc import Iterable
+from itertools import islice
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import ToolError
@@ -10,21 +13,27 @@ from ifgen.command_kit.tool import ToolError
 from ifgen_tools.top.snapshot import as_json
 from ifgen_tools.top.web.picture import Structure, pictures, structure
 from ifgen_tools.top.web.server import Server, Stream
-from ifgen_tools.top.web.tree import tree
 
 if TYPE_CHECKING:
-    from ifgen_tools.top.gathering import Gatherer
+    from ifgen_tools.top.collector import Collector
 
 _TURN: Final = 0.05  # [s] between two messages of an inspected topic
 _IDLE: Final = 0.5  # [s] between two looks whether a page is open
+_MOST_ITEMS: Final = 64
+"""The number of elements that are shown of a sequence."""
+_LONGEST: Final = 1000  # characters of a text
+_MOST: Final = 3000
+"""The number of values in a tree."""
+
+Tree = dict[str, Any]
 
 
 class Page:
     """The pages that are open, and what they have been sent."""
 
-    def __init__(self, server: Server, gatherer: Gatherer) -> None:
+    def __init__(self, server: Server, collector: Collector) -> None:
         self._server = server
-        self._gatherer = gatherer
+        self._collector = collector
         self._structure: Structure | None = None
         self._shown: dict[str, bytes] = {}  # the message of each topic that was sent last
         self._streams: tuple[Stream, ...] = ()
@@ -32,7 +41,7 @@ class Page:
     def look(self) -> None:
         """Take a snapshot and send it, with a picture if the graph has changed."""
         self._want()
-        snapshot = self._gatherer.step()
+        snapshot = self._collector.step()
         found = structure(snapshot)
         if found != self._structure:
             self._structure = found
@@ -45,9 +54,9 @@ class Page:
 
         if self._server.streams() != self._streams:
             self._want()
-            self._gatherer.listen()
+            self._collector.listen()
         for topic in {stream.inspected for stream in self._streams}:
-            tap = self._gatherer.tap(topic)
+            tap = self._collector.tap(topic)
             if tap is None or tap.latest is None or tap.latest is self._shown.get(topic):
                 continue
             self._shown[topic] = tap.latest
@@ -64,10 +73,10 @@ class Page:
             self._streams = streams
             self._shown.clear()
         inspected = [stream.inspected for stream in streams if stream.inspected]
-        self._gatherer.want([*inspected, *(topic for stream in streams for topic in stream.shown)])
+        self._collector.want([*inspected, *(topic for stream in streams for topic in stream.shown)])
 
 
-def serve(gatherer: Gatherer, port: int, period: float) -> None:
+def serve(collector: Collector, port: int, period: float) -> None:
     """Serve the page until Ctrl-C; nothing is asked or listened to while no page is open."""
     try:
         server = Server(port)
@@ -77,17 +86,61 @@ def serve(gatherer: Gatherer, port: int, period: float) -> None:
             "name another one with --port, or 0 for any",
         ) from None
     print(f"ifgen top: http://127.0.0.1:{server.port}/ (Ctrl-C ends it)", flush=True)
-    page = Page(server, gatherer)
+    page = Page(server, collector)
     try:
         while True:
             if not server.wait_for_pages(0):
-                gatherer.close()
+                collector.close()
                 while not server.wait_for_pages(_IDLE):
-                    gatherer.spin(0)
+                    collector.spin(0)
             page.look()
             end = time.monotonic() + period
             while (left := end - time.monotonic()) > 0:
                 page.send_messages()
-                gatherer.spin(min(_TURN, left))
+                collector.spin(min(_TURN, left))
     finally:
         server.close()
+
+
+def tree(message: Any) -> Tree:
+    """The fields of a message by name. A sequence that is cut has `{"more": count}` as its last element."""
+    return _Budget().message(message)
+
+
+class _Budget:
+    def __init__(self) -> None:
+        self._left = _MOST
+
+    def message(self, message: Any) -> Tree:
+        names = type(message).get_fields_and_field_types()
+        return {name: self._value(getattr(message, name)) for name in names}
+
+    def _value(self, value: Any) -> Any:
+        self._left -= 1
+        if value is None or isinstance(value, bool | int):
+            return _safe(value)
+        if isinstance(value, float):
+            return value if math.isfinite(value) else str(value)
+        if isinstance(value, str):
+            return value if len(value) <= _LONGEST else f"{value[:_LONGEST]}..."
+        if hasattr(type(value), "get_fields_and_field_types"):
+            return self.message(value) if self._left > 0 else "..."
+        if isinstance(value, Iterable):
+            return self._items(value)
+        return self._scalar(value)
+
+    def _items(self, value: Any) -> Any:
+        count = len(value)
+        shown = min(count, _MOST_ITEMS, max(self._left, 0))
+        items = [self._value(each) for each in islice(iter(value), shown)]
+        return items if shown == count else [*items, {"more": count - shown}]
+
+    def _scalar(self, value: Any) -> Any:
+        """One of numpy's."""
+        plain = value.item() if hasattr(value, "item") else str(value)
+        return self._value(plain) if isinstance(plain, bool | int | float | str) else str(plain)
+
+
+def _safe(value: bool | int | None) -> Any:
+    """JavaScript's numbers are exact up to 2**53; beyond that a text says more."""
+    return value if value is None or isinstance(value, bool) or abs(value) <= 2**53 else str(value)

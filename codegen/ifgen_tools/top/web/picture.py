@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from ifgen_tools.graph.layout import Edge, layout
 from ifgen_tools.graph.reading import FRAMEWORK_SERVICES, FRAMEWORK_TOPICS
-from ifgen_tools.top.screen.texts import shortened
+from ifgen_tools.top.screen.tables import shortened
 from ifgen_tools.top.snapshot import Snapshot
 
 _CHARACTER: Final = 7.2  # [px]

@@ -15,7 +15,7 @@ from geometry_msgs.msg import Point
 from ifgen_runtime import serialize
 from ifgen_runtime.bag import OfferedQoS, Recorder
 from ifgen_tools.bag.keys import DOWN, RIGHT, SPACE, UP
-from ifgen_tools.bag.rosbag2_interfaces import service
+from ifgen_tools.bag.services import service
 from mcap.writer import Writer as McapWriter
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -263,7 +263,7 @@ def test_keys_say_what_they_did(ifgen: Run, drive: Path, monkeypatch: pytest.Mon
     def keyboard(actions: Any, **_: Any) -> Generator[Keys]:
         yield Keys(actions, pressed)
 
-    monkeypatch.setattr("ifgen_tools.bag.playing.play.keyboard", keyboard)
+    monkeypatch.setattr("ifgen_tools.bag.play.keyboard", keyboard)
     with listening() as listener:
         listener.hear("/position", Point, "x")
         outcome = ifgen("bag", "play", drive, "--transport", "local")

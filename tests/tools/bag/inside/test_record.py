@@ -19,11 +19,10 @@ import rclpy
 from geometry_msgs.msg import Point
 from ifgen.command_kit.tool import ToolError
 from ifgen_runtime.bag import Bag, writer
-from ifgen_runtime.bag.writer import BagWriter, Limits
-from ifgen_tools.bag.choices import file_format
-from ifgen_tools.bag.recording.record import RecordCommand, Recording, record
-from ifgen_tools.bag.recording.recorder import TopicRecorder
-from ifgen_tools.bag.selection import selection
+from ifgen_runtime.bag.writer import BagWriter
+from ifgen_tools.bag.options import RecordOptions
+from ifgen_tools.bag.record import Recording, record
+from ifgen_tools.bag.recorder import TopicRecorder
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -77,13 +76,16 @@ class Talk:
         return recording.writer.count >= self._count
 
 
-def command(output: str, *topics: str, **choices: Any) -> RecordCommand:
-    """The command that records these topics, or all if none is named."""
-    path = Path(output)
-    return RecordCommand(
-        selection(topics=topics, all_topics=not topics, exclude_topics=["/rosout"]),
-        path,
-        **{"format": file_format(storage=None, output=path), "interval": 0.01, **choices},
+def command(output: str, *topics: str, **choices: Any) -> RecordOptions:
+    """The options that record these topics, or all if none is named."""
+    return RecordOptions(
+        topics=topics,
+        all_topics=not topics,
+        exclude_topics=("/rosout",),
+        output=Path(output),
+        polling_interval=10,
+        transport="local",
+        **choices,
     )
 
 
@@ -91,8 +93,8 @@ def points(count: int) -> list[Point]:
     return [Point(x=0.1 * index) for index in range(count)]
 
 
-def run(command: RecordCommand, is_done: Callable[[Recording], bool]) -> None:
-    assert record("local", command, is_done) == 0
+def run(options: RecordOptions, is_done: Callable[[Recording], bool]) -> None:
+    assert record(options, is_done) == 0
 
 
 def test_all_topics(talker: Node, capsys: pytest.CaptureFixture[str]) -> None:
@@ -150,18 +152,15 @@ def test_publishers_that_offer_different_things(talker: Node, capsys: pytest.Cap
 @pytest.mark.parametrize(
     "choices",
     [
-        {"limits": Limits(size=100)},
-        {"format": file_format(storage="sqlite3", output=None), "limits": Limits(size=100)},
-        {
-            "format": file_format(storage="sqlite3", output=None, mode="file", compression="zstd"),
-            "limits": Limits(size=100),
-        },
+        {},
+        {"storage": "sqlite3"},
+        {"storage": "sqlite3", "compression_mode": "file", "compression_format": "zstd"},
     ],
     ids=["mcap", "sqlite3", "compressed"],
 )
 def test_files_are_split(talker: Node, choices: dict[str, Any], capsys: pytest.CaptureFixture[str]) -> None:
     publisher = talker.create_publisher(Point, "position", 100)
-    run(command("drive", "/position", **choices), Talk(publisher, points(20)))
+    run(command("drive", "/position", max_bag_size=100, **choices), Talk(publisher, points(20)))
     with Bag("drive", strict=True) as bag:
         assert len(bag.files) == 5  # of 4 messages of 28 bytes
         assert [point.x for point in bag["/position"]] == [0.1 * index for index in range(20)]
@@ -171,8 +170,7 @@ def test_files_are_split(talker: Node, choices: dict[str, Any], capsys: pytest.C
 
 def test_only_the_last_files_are_kept(talker: Node) -> None:
     publisher = talker.create_publisher(Point, "position", 100)
-    limits = Limits(size=100, files=2)
-    run(command("drive", "/position", limits=limits), Talk(publisher, points(20), 8))
+    run(command("drive", "/position", max_bag_size=100, max_bag_files=2), Talk(publisher, points(20), 8))
     with Bag("drive", strict=True) as bag:
         assert [file.name for file in bag.files] == ["drive_3.mcap", "drive_4.mcap"]
         assert [point.x for point in bag["/position"]] == [0.1 * index for index in range(12, 20)]
@@ -180,8 +178,8 @@ def test_only_the_last_files_are_kept(talker: Node) -> None:
 
 def test_messages_that_are_compressed_one_by_one(talker: Node) -> None:
     publisher = talker.create_publisher(String, "text", 10)
-    choice = file_format(storage="sqlite3", output=None, mode="message", compression="zstd")
-    run(command("drive", "/text", format=choice), Talk(publisher, [String(data="walk " * 99)]))
+    choices = {"storage": "sqlite3", "compression_mode": "message", "compression_format": "zstd"}
+    run(command("drive", "/text", **choices), Talk(publisher, [String(data="walk " * 99)]))
     with Bag("drive", strict=True) as bag:
         assert [text.data for text in bag["/text"]] == ["walk " * 99]
 
@@ -194,7 +192,7 @@ def test_a_snapshot(talker: Node) -> None:
         Talk(publisher, waiting)(recording)
         return not waiting and recording.snapshot()
 
-    run(command("drive", "/position", snapshot_size=100), is_done)
+    run(command("drive", "/position", snapshot_mode=True, max_cache_size=100), is_done)
     with Bag("drive", strict=True) as bag:
         assert [point.x for point in bag["/position"]] == [0.1 * index for index in range(17, 20)]
 
@@ -211,7 +209,7 @@ def test_nothing_is_recorded_while_paused(talker: Node, capsys: pytest.CaptureFi
                 recording.toggle()
         return recording.writer.count > 0
 
-    run(command("drive", "/position", is_paused=True), is_done)
+    run(command("drive", "/position", start_paused=True), is_done)
     assert looks[:5] == [0] * 5
     said = capsys.readouterr().err
     assert said.startswith("Recording to drive. Press Ctrl-C to stop\n")
@@ -235,7 +233,7 @@ def test_a_type_that_nobody_describes(
     def refuse(*_: Any) -> None:
         raise ToolError("nobody describes it")
 
-    monkeypatch.setattr("ifgen_tools.bag.recording.recorder.class_with_hash", refuse)
+    monkeypatch.setattr("ifgen_tools.bag.recorder.class_with_hash", refuse)
     talker.create_publisher(ifgen.dynamic.class_from_text("lab_msgs/msg/Speed", "float64 v\n"), "speed", 10)
     talk, said = Talk(talker.create_publisher(Point, "position", 10), points(3)), list[str]()
 
@@ -301,8 +299,8 @@ def test_what_the_memory_has_no_room_for_is_counted(
     talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """While the first message is written, more than the middleware holds at once comes in two bursts."""
-    monkeypatch.setattr("ifgen_tools.bag.recording.recorder._DEPTH", 30)
-    monkeypatch.setattr("ifgen_tools.bag.recording.recorder._BYTES_AT_ONCE", 1)
+    monkeypatch.setattr("ifgen_tools.bag.recorder._DEPTH", 30)
+    monkeypatch.setattr("ifgen_tools.bag.recorder._BYTES_AT_ONCE", 1)
     publisher = talker.create_publisher(Point, "position", 30)
     bursts = [points(30), points(30)]
     whole = BagWriter.write
@@ -320,7 +318,7 @@ def test_what_the_memory_has_no_room_for_is_counted(
                 publisher.publish(point)
         return not bursts and not recording.topics.has_waiting
 
-    run(command("drive", "/position", most_waiting=20 * (200 + 28)), is_done)
+    run(command("drive", "/position", max_waiting_size=20 * (200 + 28)), is_done)
     with Bag("drive", strict=True) as bag:
         recorded = len(bag["/position"])
     found = re.search(r"warning: (\d+) messages of /position were received, and not", capsys.readouterr().err)
@@ -338,8 +336,8 @@ def test_what_waits_at_the_end_is_recorded(
     number: signal.Signals,
     name: str,
 ) -> None:
-    monkeypatch.setattr("ifgen_tools.bag.recording.record._ON_ITS_WAY", 0.0)
-    monkeypatch.setattr("ifgen_tools.bag.recording.recorder._AT_ONCE", 100)
+    monkeypatch.setattr("ifgen_tools.bag.record._ON_ITS_WAY", 0.0)
+    monkeypatch.setattr("ifgen_tools.bag.recorder._AT_ONCE", 100)
     talk = Talk(talker.create_publisher(Point, "position", 1000), points(900))
 
     def is_done(recording: Recording) -> bool:
@@ -359,7 +357,7 @@ def test_what_nobody_waits_for_is_counted(
     talker: Node, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A second Ctrl-C leaves out what waits."""
-    monkeypatch.setattr("ifgen_tools.bag.recording.record._ON_ITS_WAY", 0.0)
+    monkeypatch.setattr("ifgen_tools.bag.record._ON_ITS_WAY", 0.0)
     publishers = [talker.create_publisher(Point, name, 1000) for name in ("position", "goal")]
 
     def is_done(_: Recording) -> bool:
@@ -424,7 +422,7 @@ def test_a_message_is_in_the_file_soon(talker: Node, monkeypatch: pytest.MonkeyP
             with Bag(recording.writer.files[0]) as bag:
                 return [recorded.topic for recorded in bag] == ["/position"]
 
-    run(command("drive", format=file_format(storage=storage, output=None)), is_done)
+    run(command("drive", storage=storage), is_done)
 
 
 def test_what_exists_stays(ifgen: Run, tmp_path: Path) -> None:

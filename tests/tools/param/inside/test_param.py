@@ -250,7 +250,7 @@ def test_mistakes_on_the_command_line(param: Run, words: list[str], told: str) -
 
 
 def test_a_node_without_services(param: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ifgen_tools.param.remote._SERVICES_TAKE", 0.1)
+    monkeypatch.setattr("ifgen_tools.param.client._SERVICES_TAKE", 0.1)
     failed = param("get", "/mute", "speed")
     assert "error: the node '/mute' has no services for its parameters" in failed.err
 

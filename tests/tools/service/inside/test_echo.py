@@ -10,8 +10,9 @@ from collections.abc import Iterator
 import pytest
 import rclpy
 from example_interfaces.srv import AddTwoInts
+from ifgen_tools.service.commands import EchoOptions
 from ifgen_tools.service.echo import echo
-from ifgen_tools.texts.formats import Style
+from ifgen_tools.texts.style import Style
 from rclpy.node import Node
 from rclpy.qos import qos_profile_services_default
 from rclpy.service_introspection import ServiceIntrospectionState
@@ -34,7 +35,7 @@ def calls(spinning: Node) -> Iterator[None]:
 
 @pytest.mark.usefixtures("calls")
 def test_yaml(capsys: pytest.CaptureFixture[str]) -> None:
-    echo(name="add", type_name=None, style=Style(no_arr=True), most=2)
+    echo(EchoOptions(name="add", type_name=None, style=Style(no_arr=True)), most=2)
     out = capsys.readouterr().out
     assert out.startswith("info:\n  event_type: RE")
     assert "  client_gid: '<array type: uint8[16]>'\n  sequence_number: " in out
@@ -44,12 +45,15 @@ def test_yaml(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.mark.usefixtures("calls")
 def test_json_and_csv(capsys: pytest.CaptureFixture[str]) -> None:
-    echo(name="/add", type_name="example_interfaces/AddTwoInts", style=Style(), form="json", most=2)
+    echo(
+        EchoOptions(name="/add", type_name="example_interfaces/AddTwoInts", style=Style(), as_json=True),
+        most=2,
+    )
     events = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
     of_kind = {event["info"]["event_type"]: event for event in events}
     assert of_kind[1]["request"] == [{"a": 1, "b": 2}]
     assert of_kind[2]["response"] == [{"sum": 3}]
-    echo(name="/add", type_name=None, style=Style(), form="csv", most=1)
+    echo(EchoOptions(name="/add", type_name=None, style=Style(), csv=True), most=1)
     assert capsys.readouterr().out.split(",")[0] in {"1", "2"}
 
 
@@ -64,7 +68,7 @@ def test_nobody_publishes_yet(spinning: Node, capsys: pytest.CaptureFixture[str]
         client.call_async(AddTwoInts.Request(a=1, b=2))
 
     threading.Timer(0.5, begin).start()
-    echo(name="/add", type_name=None, style=Style(), form="csv", most=1)
+    echo(EchoOptions(name="/add", type_name=None, style=Style(), csv=True), most=1)
     said = capsys.readouterr()
     assert "nobody publishes events of '/add' yet" in said.err
     assert "configure_introspection" in said.err

@@ -1,1 +1,0 @@
-"""Records what is published, and lets others pause it, split it and take snapshots."""
