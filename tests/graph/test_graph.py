@@ -14,8 +14,7 @@ from ifgen.graph.layout import layout
 from ifgen.graph.model import Graph, SeenEndpoint, of_endpoints
 from ifgen.graph.svg import svg
 from ifgen.graph.text import dot, mermaid
-from ifgen.nodl.compatibility import mismatch
-from ifgen.nodl.model import Category, QosProfile
+from ifgen.nodl.model import Category, QosProfile, qos_mismatch
 
 BEST_EFFORT = QosProfile("KEEP_LAST", "BEST_EFFORT", depth=1)
 RELIABLE = QosProfile("KEEP_LAST", "RELIABLE", depth=1)
@@ -91,7 +90,7 @@ def profile(**values: object) -> QosProfile:
     ],
 )
 def test_compatibility(offered: dict[str, object], requested: dict[str, object], meets: bool) -> None:
-    assert (mismatch(profile(**offered), profile(**requested)) is None) == meets
+    assert (qos_mismatch(profile(**offered), profile(**requested)) is None) == meets
 
 
 def test_renderings_hold_every_box_edge_and_problem(graph: Graph) -> None:

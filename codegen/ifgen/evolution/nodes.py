@@ -25,8 +25,15 @@ from ifgen.evolution.edits import (
     ValidatorsChanged,
 )
 from ifgen.evolution.python_values import Renamed
-from ifgen.nodl.compatibility import mismatch
-from ifgen.nodl.model import Category, Endpoint, NodeDescription, Parameter, ParameterType, Validator
+from ifgen.nodl.model import (
+    Category,
+    Endpoint,
+    NodeDescription,
+    Parameter,
+    ParameterType,
+    Validator,
+    qos_mismatch,
+)
 from ifgen.nodl.names import expanded
 
 T = TypeVar("T")
@@ -101,11 +108,11 @@ def _mismatch(old: Endpoint, new: Endpoint) -> str | None:
     assert new.qos is not None
     match new.category:
         case Category.PUBLISHER:
-            return mismatch(new.qos, old.qos)
+            return qos_mismatch(new.qos, old.qos)
         case Category.SUBSCRIPTION:
-            return mismatch(old.qos, new.qos)
+            return qos_mismatch(old.qos, new.qos)
         case _:  # a service sends and receives
-            return mismatch(new.qos, old.qos) or mismatch(old.qos, new.qos)
+            return qos_mismatch(new.qos, old.qos) or qos_mismatch(old.qos, new.qos)
 
 
 def _parameters(

@@ -12,7 +12,7 @@ from ifgen.diagnostics import shown_character
 from ifgen.graph.model import SeenEndpoint
 from ifgen.nodl import names
 from ifgen.nodl.model import Category, QosProfile
-from ifgen.nodl.syntax.texts import needs_escapes
+from ifgen.nodl.syntax.scalars import needs_escapes
 from ifgen.observing.node_observation import Seen, SeenParameter
 
 _LIFECYCLE: Final = (
