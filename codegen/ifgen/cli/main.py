@@ -129,9 +129,9 @@ class _Commands(click.Group):
     )
     module_of: Final = {
         "adapt": "evolution.adapt",
-        "breaking": "evolution.breaking",
+        "breaking": "evolution.differences",
         "demo": "running.demo",
-        "diff": "evolution.diff",
+        "diff": "evolution.differences",
         "lock": "evolution.lock",
         "paths": "editors",
         "router": "running.router",

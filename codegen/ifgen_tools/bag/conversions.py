@@ -13,8 +13,7 @@ from typing import Any, Final
 
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.dynamic.making import make
-from ifgen.evolution.adapting.steps import PARAMETERS, Function, Functions
-from ifgen.evolution.adapting.versions import TwoVersions
+from ifgen.evolution.adapting.steps import PARAMETERS, Function, Functions, TwoVersions
 from ifgen_runtime.codec import deserialize, serialize
 
 _BUILTINS: Final = {name: getattr(builtins, name) for name in ("bytes", "float")}
