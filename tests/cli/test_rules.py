@@ -18,7 +18,7 @@ from .conftest import Run, write
 
 RULES = list(rulebook.rules().values())
 CODE = [Path(each.__file__).parent for each in (toolkit, tools)]
-MAKERS = {"Diagnostic", "Said", "BadType", "BadValue", "_warning", "_problem", "report"}
+MAKERS = {"Diagnostic", "Finding", "BadType", "BadValue", "_warning", "_problem", "report"}
 """What is called with the name of a rule."""
 COMPUTED = {
     "duplicate-field",

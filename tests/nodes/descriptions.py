@@ -14,6 +14,7 @@ from ifgen.diagnostics import Source, Span, any_errors
 from ifgen.generator_py.nodes.package import plan_nodes, plan_users_files
 from ifgen.generator_py.templates.render import Templates
 from ifgen.generator_py.tests.package import plan_node_tests, plan_users_tests
+from ifgen.nodl.document import Written
 from ifgen.nodl.model import (
     Category,
     Endpoint,
@@ -28,7 +29,6 @@ from ifgen.nodl.model import (
 )
 from ifgen.nodl.names import expanded
 from ifgen.nodl.rules import check_node
-from ifgen.nodl.written import Written
 from ifgen.pipeline import stages
 
 Drawn = TypeVar("Drawn")

@@ -122,7 +122,7 @@ def test_json_says_the_same_as_yaml(load_nodes: Load) -> None:
         ('{"nodl_version": 2, "nodl_version": 2}', "duplicate-key", (1, 21)),
         ('{"nodl_version": 2, "description": "\\ud800"}', "invalid-text", (1, 36)),
         ('{"nodl_version": NaN}', "json-syntax", (1, 18)),
-        ("[" * 100, "too-large", (1, 42)),
+        ("[" * 100, "too-large", (1, 41)),
     ],
 )
 def test_json_mistakes(load_nodes: Load, text: str, rule: str, at: tuple[int, int]) -> None:

@@ -134,9 +134,9 @@ class _Commands(click.Group):
     )
     module_of: Final = {
         "adapt": "ifgen.cli.evolution.adapt",
-        "breaking": "ifgen.cli.evolution.breaking",
+        "breaking": "ifgen.cli.evolution.differences",
         "demo": "ifgen_tools.running.demo",
-        "diff": "ifgen.cli.evolution.diff",
+        "diff": "ifgen.cli.evolution.differences",
         "lock": "ifgen.cli.evolution.lock",
         "paths": "ifgen.cli.editors",
         "router": "ifgen_tools.running.router",

@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
 from ifgen.definition.interfaces import Field, Interface, Message, Registry
 from ifgen.definition.references import references
-from ifgen.evolution import interfaces, nodes
+from ifgen.definition.types import Array, BoundedSequence, FieldType, NamespacedType, UnboundedSequence
+from ifgen.evolution import nodes
 from ifgen.evolution.edits import (
     Edit,
+    InterfaceAdded,
+    InterfaceEdit,
     InterfaceRemoved,
     InterfaceRenamed,
     NodeRemoved,
     PackageRemoved,
     Versions,
 )
-from ifgen.evolution.interfaces import versions
-from ifgen.evolution.layout import Layouts
+from ifgen.evolution.lock.text import written_parts
 from ifgen.evolution.messages import Comparison
+from ifgen.evolution.values import Layouts
 from ifgen.evolution.version import Version
 
 _MAX_PATHS: Final = 50  # to one nested message: nobody reads more
@@ -80,7 +83,7 @@ def between(
                 yield Difference(edit, (Path(top, path),), is_own=False)
             yield from nested(inner, top, path)
 
-    for version in versions(old, new):
+    for version in parts_of(old, new):
         yield from map(Difference, messages.edits(version))
         yield from nested(version, version.new, ())
 
@@ -93,7 +96,7 @@ class _Comparer:
         in_old, in_new = old.interfaces, new.interfaces
         gone = {name: i for name, i in in_old.items() if not new.leaves_out(i)}
         come = {name: i for name, i in in_new.items() if not old.leaves_out(i)}
-        self._both, self._edits = interfaces.matched(gone, come, old.registry, new.registry)
+        self._both, self._edits = _matched(gone, come, old.registry, new.registry)
         names = {e.old.type_name: e.new.type_name for e in self._edits if isinstance(e, InterfaceRenamed)}
         self._renamed: Mapping[str, str] = names
         self._messages = Comparison(Layouts(old.registry), Layouts(new.registry), self._in_new)
@@ -103,7 +106,7 @@ class _Comparer:
             *self._both,
             *((e.old, e.new) for e in self._edits if isinstance(e, InterfaceRenamed)),
         ]:
-            for version in versions(before, after):
+            for version in parts_of(before, after):
                 self._own[version.new.type_name] = version
 
     def differences(self) -> Iterator[Difference]:
@@ -214,3 +217,89 @@ def _held(field: Field) -> str:
 
 def _holds_none(message: Message, holding: set[str]) -> bool:
     return all(type_.type_name not in holding for _, type_ in references(message))
+
+
+def parts_of(old: Interface, new: Interface) -> Iterator[Versions]:
+    """The parts of an interface in both versions. Both are of one kind."""
+    for before, after in zip(written_parts(old), written_parts(new), strict=True):
+        yield Versions(before, after)
+
+
+def _matched(
+    old: Mapping[str, Interface], new: Mapping[str, Interface], old_registry: Registry, new_registry: Registry
+) -> tuple[list[tuple[Interface, Interface]], list[InterfaceEdit]]:
+    """The interfaces that both versions have, side by side, and the edits of those that only one has."""
+    gone = [interface for name, interface in old.items() if name not in new]
+    come = [interface for name, interface in new.items() if name not in old]
+    renamed = _renamed(gone, come, old_registry, new_registry) if gone and come else []
+    moved = {id(interface) for pair in renamed for interface in pair}
+    edits: list[InterfaceEdit] = [InterfaceRenamed(before, after) for before, after in renamed]
+    edits += (InterfaceRemoved(interface) for interface in gone if id(interface) not in moved)
+    edits += (InterfaceAdded(interface) for interface in come if id(interface) not in moved)
+    both = [(old[name], interface) for name, interface in new.items() if name in old]
+    return both, edits
+
+
+def _renamed(
+    gone: Sequence[Interface], come: Sequence[Interface], old: Registry, new: Registry
+) -> list[tuple[Interface, Interface]]:
+    """The interfaces with the same contents in another package, or under another name in the same one.
+
+    Each is the only one that can have become the other.
+    """
+    before, after = _by_contents(gone, old), _by_contents(come, new)
+    pairs: list[tuple[Interface, Interface]] = []
+    for contents, were in before.items():
+        are = after.get(contents, [])
+        for is_alike in (_has_same_name, _is_in_same_package):
+            for interface in list(were):
+                same = [other for other in are if is_alike(other, interface)]
+                rivals = [other for other in were if is_alike(other, interface)]
+                if len(same) == len(rivals) == 1:
+                    pairs.append((interface, same[0]))
+                    were.remove(interface)
+                    are.remove(same[0])
+    return pairs
+
+
+def _has_same_name(one: Interface, other: Interface) -> bool:
+    return one.name == other.name
+
+
+def _is_in_same_package(one: Interface, other: Interface) -> bool:
+    return one.package == other.package
+
+
+def _by_contents(interfaces: Iterable[Interface], registry: Registry) -> dict[object, list[Interface]]:
+    found: dict[object, list[Interface]] = {}
+    known: dict[str, object] = {}
+    for interface in interfaces:
+        parts = tuple(_contents(part, registry, known) for part in written_parts(interface))
+        found.setdefault((interface.folder, parts), []).append(interface)
+    return found
+
+
+def _contents(message: Message, registry: Registry, known: dict[str, object]) -> object:
+    """All that a message holds, without the name of any type."""
+    name = message.type_name
+    if name not in known:
+        fields = tuple(
+            (f.name, repr(f.default_value), _held_contents(f.type, registry, known)) for f in message.fields
+        )
+        constants = frozenset((c.name, c.type, repr(c.value)) for c in message.constants)
+        known[name] = (fields, constants)
+    return known[name]
+
+
+def _held_contents(type_: FieldType, registry: Registry, known: dict[str, object]) -> object:
+    match type_:
+        case NamespacedType():
+            return _contents(registry.message(type_.type_name), registry, known)
+        case Array(value_type, size):
+            return ("array", size, _held_contents(value_type, registry, known))
+        case BoundedSequence(value_type, size):
+            return ("sequence", size, _held_contents(value_type, registry, known))
+        case UnboundedSequence(value_type):
+            return ("sequence", None, _held_contents(value_type, registry, known))
+        case _:
+            return type_

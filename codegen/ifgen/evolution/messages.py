@@ -1,29 +1,16 @@
-"""Compares two versions of a message: its fields in order, then its constants."""
+"""Compares two versions of a message: its fields in order, then its constants and enumerations."""
 
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Callable, Container, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ifgen.definition.interfaces import Constant, Field
+from ifgen.definition.interfaces import Constant, Field, Message
 from ifgen.definition.types import CollectionType, FieldType, NamespacedType
-from ifgen.evolution.edits import (
-    ConstantAdded,
-    ConstantChanged,
-    ConstantRemoved,
-    ConstantRenamed,
-    DefaultChanged,
-    FieldAdded,
-    FieldMoved,
-    FieldRemoved,
-    FieldRenamed,
-    FieldRetyped,
-    MessageEdit,
-    Versions,
-)
-from ifgen.evolution.layout import Layouts
-from ifgen.evolution.python_values import Renamed, accepts, same_constant, same_default
+from ifgen.evolution import edits
+from ifgen.evolution.edits import MessageEdit, Versions
+from ifgen.evolution.values import Layouts, Renamed, accepts, same_constant, same_default
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,27 +29,25 @@ class Comparison:
         """The differences between two versions of a message, those of nested messages left out."""
         if (within.old.fields, within.old.constants) == (within.new.fields, within.new.constants):
             return
-        edits = list(self._own_edits(within))
-        yield from edits
+        own = list(self._own_edits(within))
+        yield from own
         if within.old.constants and self.with_constants:
-            from ifgen.evolution.enumerations import lost_members  # with the generator, for few messages
-
-            yield from lost_members(within, edits)
+            yield from _enumerations(within, own)
 
     def _own_edits(self, within: Versions) -> Iterator[MessageEdit]:
         after = _still_there_after(within)
         for old, new in self.pairs(within):
             if old is None and new is not None:
-                yield FieldAdded(within, new)
+                yield edits.FieldAdded(within, new)
             elif new is None and old is not None:
-                yield FieldRemoved(within, old, after.get(old.name))
+                yield edits.FieldRemoved(within, old, after.get(old.name))
             elif old is not None and new is not None:
                 if old.name != new.name:
-                    yield FieldRenamed(within, old, new)
+                    yield edits.FieldRenamed(within, old, new)
                 yield from self._field(within, old, new)
         before, now = _by_name(within.old.fields), _by_name(within.new.fields)
         for name in _moved(list(before), list(now)):
-            yield FieldMoved(within, before[name], now[name])
+            yield edits.FieldMoved(within, before[name], now[name])
         if self.with_constants:
             yield from _constants(within)
 
@@ -84,11 +69,11 @@ class Comparison:
     def _field(self, within: Versions, old: Field, new: Field) -> Iterator[MessageEdit]:
         if self.same_type(old.type, new.type):
             if not same_default(old, new):
-                yield DefaultChanged(within, old, new)
+                yield edits.DefaultChanged(within, old, new)
             return
         same_layout = self.old.of(old.type) == self.new.of(new.type)
         same_values = accepts(new.type, old.type, self.renamed) and same_default(old, new)
-        yield FieldRetyped(within, old, new, same_layout, same_values)
+        yield edits.FieldRetyped(within, old, new, same_layout, same_values)
 
 
 def paired_fields(
@@ -178,15 +163,54 @@ def _by_name(fields: Sequence[Field]) -> dict[str, Field]:
 def _constants(within: Versions) -> Iterator[MessageEdit]:
     for old, new in paired_constants(within.old.constants, within.new.constants):
         if old is None and new is not None:
-            yield ConstantAdded(within, new)
+            yield edits.ConstantAdded(within, new)
         elif new is None and old is not None:
-            yield ConstantRemoved(within, old)
+            yield edits.ConstantRemoved(within, old)
         elif old is not None and new is not None:
             if old.name != new.name:
-                yield ConstantRenamed(within, old, new)
+                yield edits.ConstantRenamed(within, old, new)
             elif not same_constant(old, new):
-                yield ConstantChanged(within, old, new)
+                yield edits.ConstantChanged(within, old, new)
 
 
 def _same_value(old: Constant, come: Sequence[Constant]) -> Constant | None:
     return next((new for new in come if new.type == old.type and same_constant(old, new)), None)
+
+
+def _enumerations(within: Versions, own: Iterable[MessageEdit]) -> Iterator[edits.EnumChanged]:
+    """The enumerations that lack members which no other edit explains."""
+    from ifgen.generator_py.names import enum_name  # the generator decides which there are, in few messages
+
+    before, after = _members(within.old), _members(within.new)
+    touched = set(_touched(own))
+    for name, constants in before.items():
+        of_enum = {name, *(constant.name for constant in constants)}
+        kept = {constant.name for constant in after.get(name, ())}
+        lost = tuple(constant for constant in constants if constant.name not in kept)
+        if lost and of_enum.isdisjoint(touched):
+            field = next(field for field in within.new.fields if field.name == name)
+            yield edits.EnumChanged(within, field, enum_name(field), lost)
+
+
+def _members(message: Message) -> Mapping[str, tuple[Constant, ...]]:
+    """The constants of each enumeration, by the name of its field."""
+    # Few messages have any, and the generator loads slowly.
+    from ifgen.generator_py.messages.enums import enums, values
+    from ifgen.generator_py.names import enum_name
+
+    names = {enum.name for enum in enums(message)}
+    return {field.name: owned for field, owned in values(message) if enum_name(field) in names}
+
+
+def _touched(own: Iterable[MessageEdit]) -> Iterator[str]:
+    """The fields and constants whose own edits say enough."""
+    for edit in own:
+        match edit:
+            case edits.FieldRemoved(_, field):
+                yield field.name
+            case edits.ConstantRemoved(_, constant):
+                yield constant.name
+            case edits.FieldRenamed(_, old) | edits.ConstantRenamed(_, old) | edits.ConstantChanged(_, old):
+                yield old.name
+            case _:
+                pass

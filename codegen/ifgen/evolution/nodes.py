@@ -5,28 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Final, TypeVar
 
-from ifgen.evolution.edits import (
-    EndpointAdded,
-    EndpointRemoved,
-    EndpointRenamed,
-    EndpointRetyped,
-    NodeAdded,
-    NodeClassChanged,
-    NodeEdit,
-    NodeRemoved,
-    NodeRenamed,
-    ParameterAccessChanged,
-    ParameterAdded,
-    ParameterDefaultChanged,
-    ParameterRemoved,
-    ParameterRenamed,
-    ParameterRetyped,
-    QosChanged,
-    ValidatorsChanged,
+from ifgen.evolution import edits
+from ifgen.evolution.values import Renamed
+from ifgen.nodl.model import (
+    Category,
+    Endpoint,
+    NodeDescription,
+    Parameter,
+    ParameterType,
+    Validator,
+    qos_mismatch,
 )
-from ifgen.evolution.python_values import Renamed
-from ifgen.nodl.compatibility import mismatch
-from ifgen.nodl.model import Category, Endpoint, NodeDescription, Parameter, ParameterType, Validator
 from ifgen.nodl.names import expanded
 
 T = TypeVar("T")
@@ -39,7 +28,7 @@ _TAKES_MORE_WITH: Final = {
 
 def compare(
     old: Iterable[NodeDescription], new: Iterable[NodeDescription], renamed: Renamed
-) -> Iterator[NodeEdit]:
+) -> Iterator[edits.NodeEdit]:
     """The differences between the nodes of two versions.
 
     `renamed` maps the old name of an interface to the new one.
@@ -48,19 +37,19 @@ def compare(
     gone = [node for key, node in in_old.items() if key not in in_new]
     come = [node for key, node in in_new.items() if key not in in_old]
     for before, after in _paired(gone, come, lambda node: (node.endpoints, node.parameters)):
-        yield NodeRenamed(before, after)
+        yield edits.NodeRenamed(before, after)
         gone.remove(before)
         come.remove(after)
-    yield from map(NodeRemoved, gone)
-    yield from map(NodeAdded, come)
+    yield from map(edits.NodeRemoved, gone)
+    yield from map(edits.NodeAdded, come)
     for key, node in in_new.items():
         if key in in_old:
             yield from _node(in_old[key], node, renamed)
 
 
-def _node(old: NodeDescription, new: NodeDescription, renamed: Renamed) -> Iterator[NodeEdit]:
+def _node(old: NodeDescription, new: NodeDescription, renamed: Renamed) -> Iterator[edits.NodeEdit]:
     if (old.node_class, old.style) != (new.node_class, new.style):
-        yield NodeClassChanged(old, new)
+        yield edits.NodeClassChanged(old, new)
     for category in Category:
         yield from _endpoints(
             new,
@@ -73,26 +62,26 @@ def _node(old: NodeDescription, new: NodeDescription, renamed: Renamed) -> Itera
 
 def _endpoints(
     node: NodeDescription, old: Sequence[Endpoint], new: Sequence[Endpoint], renamed: Renamed
-) -> Iterator[NodeEdit]:
+) -> Iterator[edits.NodeEdit]:
     in_old = {expanded(endpoint.name, node.name): endpoint for endpoint in old}
     in_new = {expanded(endpoint.name, node.name): endpoint for endpoint in new}
     gone = [endpoint for name, endpoint in in_old.items() if name not in in_new]
     come = [endpoint for name, endpoint in in_new.items() if name not in in_old]
     pairs = _paired(gone, come, lambda endpoint: endpoint.type_name)
     for before, after in pairs:
-        yield EndpointRenamed(node, before, after)
+        yield edits.EndpointRenamed(node, before, after)
         gone.remove(before)
         come.remove(after)
     for endpoint in gone:
-        yield EndpointRemoved(node, endpoint)
+        yield edits.EndpointRemoved(node, endpoint)
     for endpoint in come:
-        yield EndpointAdded(node, endpoint)
+        yield edits.EndpointAdded(node, endpoint)
     pairs += ((in_old[name], endpoint) for name, endpoint in in_new.items() if name in in_old)
     for before, after in pairs:
         if renamed(before.type_name) != after.type_name:
-            yield EndpointRetyped(node, before, after)
+            yield edits.EndpointRetyped(node, before, after)
         elif before.qos != after.qos and before.qos is not None and after.qos is not None:
-            yield QosChanged(node, before, after, _mismatch(before, after))
+            yield edits.QosChanged(node, before, after, _mismatch(before, after))
 
 
 def _mismatch(old: Endpoint, new: Endpoint) -> str | None:
@@ -101,42 +90,42 @@ def _mismatch(old: Endpoint, new: Endpoint) -> str | None:
     assert new.qos is not None
     match new.category:
         case Category.PUBLISHER:
-            return mismatch(new.qos, old.qos)
+            return qos_mismatch(new.qos, old.qos)
         case Category.SUBSCRIPTION:
-            return mismatch(old.qos, new.qos)
+            return qos_mismatch(old.qos, new.qos)
         case _:  # a service sends and receives
-            return mismatch(new.qos, old.qos) or mismatch(old.qos, new.qos)
+            return qos_mismatch(new.qos, old.qos) or qos_mismatch(old.qos, new.qos)
 
 
 def _parameters(
     node: NodeDescription, old: Sequence[Parameter], new: Sequence[Parameter]
-) -> Iterator[NodeEdit]:
+) -> Iterator[edits.NodeEdit]:
     in_old, in_new = {p.name: p for p in old}, {p.name: p for p in new}
     gone = [parameter for parameter in old if parameter.name not in in_new]
     come = [parameter for parameter in new if parameter.name not in in_old]
     same = _paired(gone, come, lambda p: (p.type, repr(p.default), p.read_only, p.validators))
     for before, after in same:
-        yield ParameterRenamed(node, before, after)
+        yield edits.ParameterRenamed(node, before, after)
         gone.remove(before)
         come.remove(after)
     for parameter in gone:
-        yield ParameterRemoved(node, parameter)
+        yield edits.ParameterRemoved(node, parameter)
     for parameter in come:
-        yield ParameterAdded(node, parameter)
+        yield edits.ParameterAdded(node, parameter)
     for parameter in new:
         if parameter.name in in_old:
             yield from _parameter(node, in_old[parameter.name], parameter)
 
 
-def _parameter(node: NodeDescription, old: Parameter, new: Parameter) -> Iterator[NodeEdit]:
+def _parameter(node: NodeDescription, old: Parameter, new: Parameter) -> Iterator[edits.NodeEdit]:
     if old.type != new.type:
-        yield ParameterRetyped(node, old, new, _takes_all_of_type(new.type, old.type))
+        yield edits.ParameterRetyped(node, old, new, _takes_all_of_type(new.type, old.type))
     if old.type.base == new.type.base and repr(old.default) != repr(new.default):
-        yield ParameterDefaultChanged(node, old, new)
+        yield edits.ParameterDefaultChanged(node, old, new)
     if old.read_only != new.read_only:
-        yield ParameterAccessChanged(node, old, new)
+        yield edits.ParameterAccessChanged(node, old, new)
     if set(old.validators) != set(new.validators):
-        yield ValidatorsChanged(node, old, new, _takes_all(new.validators, old.validators))
+        yield edits.ValidatorsChanged(node, old, new, _takes_all(new.validators, old.validators))
 
 
 def _takes_all_of_type(new: ParameterType, old: ParameterType) -> bool:

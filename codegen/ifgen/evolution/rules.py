@@ -4,89 +4,67 @@ from __future__ import annotations
 
 from typing import Final, assert_never
 
-from ifgen.evolution.edits import (
-    Category,
-    ConstantAdded,
-    ConstantChanged,
-    ConstantRemoved,
-    ConstantRenamed,
-    DefaultChanged,
-    Edit,
-    EndpointAdded,
-    EndpointRemoved,
-    EndpointRenamed,
-    EndpointRetyped,
-    EnumChanged,
-    FieldAdded,
-    FieldMoved,
-    FieldRemoved,
-    FieldRenamed,
-    FieldRetyped,
-    InterfaceAdded,
-    InterfaceRemoved,
-    InterfaceRenamed,
-    NodeAdded,
-    NodeClassChanged,
-    NodeRemoved,
-    NodeRenamed,
-    PackageRemoved,
-    ParameterAccessChanged,
-    ParameterAdded,
-    ParameterDefaultChanged,
-    ParameterRemoved,
-    ParameterRenamed,
-    ParameterRetyped,
-    QosChanged,
-    ValidatorsChanged,
-)
+from ifgen.evolution import edits
 
-NOTHING: Final = frozenset[Category]()
-_SOURCE: Final = frozenset({Category.SOURCE})
-_HASH: Final = frozenset({Category.HASH})
-_LAYOUT: Final = frozenset({Category.HASH, Category.WIRE})
-_NAME: Final = frozenset({Category.SOURCE, Category.HASH})
-_ALL: Final = frozenset(Category)
+NOTHING: Final = frozenset[edits.Category]()
+_SOURCE: Final = frozenset({edits.Category.SOURCE})
+_HASH: Final = frozenset({edits.Category.HASH})
+_LAYOUT: Final = frozenset({edits.Category.HASH, edits.Category.WIRE})
+_NAME: Final = frozenset({edits.Category.SOURCE, edits.Category.HASH})
+_ALL: Final = frozenset(edits.Category)
 
 
-def broken_by(edit: Edit) -> frozenset[Category]:
+def broken_by(edit: edits.Edit) -> frozenset[edits.Category]:
     """The categories that an edit breaks. Whatever breaks the wire changes a hash, too."""
     match edit:
-        case FieldRemoved() | InterfaceRemoved() | PackageRemoved():
+        case edits.FieldRemoved() | edits.InterfaceRemoved() | edits.PackageRemoved():
             return _ALL
-        case FieldAdded() | FieldMoved():
+        case edits.FieldAdded() | edits.FieldMoved():
             return _LAYOUT
-        case FieldRenamed() | InterfaceRenamed():
+        case edits.FieldRenamed() | edits.InterfaceRenamed():
             return _NAME
-        case FieldRetyped():
+        case edits.FieldRetyped():
             layout = _HASH if edit.same_layout else _LAYOUT
             return layout if edit.same_values else layout | _SOURCE
-        case DefaultChanged() | ConstantRemoved() | ConstantRenamed() | ConstantChanged() | EnumChanged():
+        case (
+            edits.DefaultChanged()
+            | edits.ConstantRemoved()
+            | edits.ConstantRenamed()
+            | edits.ConstantChanged()
+            | edits.EnumChanged()
+        ):
             return _SOURCE
-        case EndpointRemoved() | EndpointRenamed() | EndpointRetyped() | NodeRemoved() | NodeRenamed():
+        case (
+            edits.EndpointRemoved()
+            | edits.EndpointRenamed()
+            | edits.EndpointRetyped()
+            | edits.NodeRemoved()
+            | edits.NodeRenamed()
+        ):
             return _NAME
-        case QosChanged():
+        case edits.QosChanged():
             return NOTHING if edit.mismatch is None else _HASH
-        case ParameterRetyped() | ValidatorsChanged():
+        case edits.ParameterRetyped() | edits.ValidatorsChanged():
             return NOTHING if edit.accepts_all else _SOURCE
-        case ParameterAdded():
+        case edits.ParameterAdded():
             return _SOURCE if edit.parameter.is_required else NOTHING
-        case ParameterDefaultChanged():
+        case edits.ParameterDefaultChanged():
             return NOTHING if edit.old.default is None else _SOURCE
-        case ParameterAccessChanged():
+        case edits.ParameterAccessChanged():
             return _SOURCE if edit.new.read_only else NOTHING
-        case ParameterRemoved() | ParameterRenamed() | NodeClassChanged():
+        case edits.ParameterRemoved() | edits.ParameterRenamed() | edits.NodeClassChanged():
             return _SOURCE
-        case ConstantAdded() | InterfaceAdded() | NodeAdded() | EndpointAdded():
+        case edits.ConstantAdded() | edits.InterfaceAdded() | edits.NodeAdded() | edits.EndpointAdded():
             return NOTHING
         case _:
             assert_never(edit)
 
 
-def is_broken(category: Category, edit: Edit) -> bool:
+def is_broken(category: edits.Category, edit: edits.Edit) -> bool:
     """Whether an edit breaks the promise of a category.
 
     Who promises that Python code works promises that peers match, and who promises this that bytes keep
     their meaning.
     """
-    promised = list(Category)[list(Category).index(category) :]
+    promised = list(edits.Category)[list(edits.Category).index(category) :]
     return not broken_by(edit).isdisjoint(promised)

@@ -10,7 +10,7 @@ from ifgen.definition.references import package_advice
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
 from ifgen.nodl import names
 from ifgen.nodl.model import Category, Endpoint, QosProfile
-from ifgen.nodl.syntax import explain, shape
+from ifgen.nodl.syntax import tree
 from ifgen.nodl.syntax.tree import MapNode, Node
 from ifgen.reading.packages import PackageFiles
 from ifgen.reading.search_path import SearchPath
@@ -41,7 +41,7 @@ QOS_KEYS: Final = (
 def read(document: MapNode, category: Category, search: SearchPath, problems: FileProblems) -> list[Endpoint]:
     """The endpoints in one of the lists of a document, without those that have no usable name or type."""
     found: list[Endpoint] = []
-    for node in shape.items(document, category, "a list of endpoints", problems):
+    for node in tree.items(document, category, "a list of endpoints", problems):
         endpoint = _endpoint(node, category, search, problems)
         if endpoint is not None:
             found.append(endpoint)
@@ -62,10 +62,10 @@ def keys(category: Category) -> tuple[tuple[str, ...], tuple[str, ...]]:
 def _endpoint(node: Node, category: Category, search: SearchPath, problems: FileProblems) -> Endpoint | None:
     what = f"{_article(category.singular)}"
     known, required = keys(category)
-    if (fields := shape.table(node, what, known, required, problems)) is None:
+    if (fields := tree.table(node, what, known, required, problems)) is None:
         return None
-    name, type_text = shape.text(fields, "name", problems), shape.text(fields, "type", problems)
-    description = shape.text(fields, "description", problems) or ""
+    name, type_text = tree.text(fields, "name", problems), tree.text(fields, "type", problems)
+    description = tree.text(fields, "description", problems) or ""
     qos_node = fields.get("qos") if "qos" in known else None
     qos = _qos(qos_node, problems) if qos_node is not None else None
     type_name = None
@@ -81,16 +81,16 @@ def _endpoint(node: Node, category: Category, search: SearchPath, problems: File
 
 
 def _qos(node: Node, problems: FileProblems) -> QosProfile | None:
-    fields = shape.table(node, "a QoS profile", QOS_KEYS, ("history", "reliability"), problems)
+    fields = tree.table(node, "a QoS profile", QOS_KEYS, ("history", "reliability"), problems)
     if fields is None:
         return None
-    policies = {name: shape.choice(fields, name, options, problems) for name, options in POLICIES.items()}
-    durations = {name: shape.integer(fields, name, 0, MAX_NS, problems) for name in DURATIONS}
-    depth = shape.integer(fields, "depth", 1, MAX_DEPTH, problems)
+    policies = {name: tree.choice(fields, name, options, problems) for name, options in POLICIES.items()}
+    durations = {name: tree.integer(fields, name, 0, MAX_NS, problems) for name in DURATIONS}
+    depth = tree.integer(fields, "depth", 1, MAX_DEPTH, problems)
     if policies["history"] == "KEEP_LAST" and fields.get("depth") is None:
         history = _span(fields, "history")
         problems.error(
-            explain.missing_key,
+            tree.missing_key,
             "depth",
             "KEEP_LAST",
             history,

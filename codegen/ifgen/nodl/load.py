@@ -11,10 +11,9 @@ from ifgen.definition.interfaces import Registry
 from ifgen.definition.problems import FileProblems, one_for_each_cause
 from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
-from ifgen.nodl import document, include, node, rules
-from ifgen.nodl.document import Document
+from ifgen.nodl import composition, document, rules
+from ifgen.nodl.document import Document, Written, written
 from ifgen.nodl.model import NodeDescription, NodePackage, Nodes, PackageMetadata
-from ifgen.nodl.written import Written, written
 from ifgen.reading import package_xml
 from ifgen.reading.packages import InterfaceFile, NodeFile, PackageFiles, node_name
 from ifgen.reading.search_path import SearchPath
@@ -25,7 +24,7 @@ def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:
 
     Raises InputError with everything that is wrong, the interfaces that they use included.
     """
-    loader = _Loader(search, [include.real(package.root) for package in packages])
+    loader = _Loader(search, [composition.real(package.root) for package in packages])
     loaded = tuple(loader.package(package) for package in packages if package.nodes)
     errors, warnings = loader.findings()
     try:
@@ -55,7 +54,9 @@ class _Loader:
             self._problems(package.declared.source)
         self._report(file_names.check_package(package))
         read = {
-            include.real(file.path): (file, found) for file in package.nodes if (found := self._read(file))
+            composition.real(file.path): (file, found)
+            for file in package.nodes
+            if (found := self._read(file))
         }
         for path in read:
             self._problems_of[path].sees_all = not package.partial
@@ -64,7 +65,7 @@ class _Loader:
         nodes = [self._node(package, *read[path]) for path in roots]
         sources = {path: found.source for path, (_, found) in read.items()}
         for description, documents, names in nodes:
-            sources.update((include.real(found.source.path), found.source) for found in documents)
+            sources.update((composition.real(found.source.path), found.source) for found in documents)
             self._report(rules.check_node(description, names))
         descriptions = sorted((description for description, *_ in nodes), key=lambda found: found.name)
         self._report(rules.check_package(descriptions))
@@ -95,16 +96,16 @@ class _Loader:
             missed.extend([] if found else [None])
             return found
 
-        documents = include.documents(root, self._search, read, missed.append)
+        documents = composition.documents(root, self._search, read, missed.append)
         self._report(filter(None, missed))
-        parameters, endpoints = node.merged(documents, self._report)
-        problems = self._problems_of[include.real(root.source.path)]
-        description = node.described(package.name, file, root, parameters, endpoints, problems)
+        parameters, endpoints = composition.merged(documents, self._report)
+        problems = self._problems_of[composition.real(root.source.path)]
+        description = composition.described(package.name, file, root, parameters, endpoints, problems)
         return description, documents, written(documents, complete=not missed)
 
     def _read(self, file: NodeFile) -> Document | None:
         """A document, read once; None if it cannot be read."""
-        path = include.real(file.path)
+        path = composition.real(file.path)
         if path not in self._documents:
             self._documents[path] = None
             try:
@@ -119,7 +120,7 @@ class _Loader:
 
     def _problems(self, source: Source) -> FileProblems:
         """The diagnostics found in a file so far, by any reader."""
-        return self._problems_of.setdefault(include.real(source.path), FileProblems(source))
+        return self._problems_of.setdefault(composition.real(source.path), FileProblems(source))
 
     def _report(self, found: Iterable[Diagnostic]) -> None:
         """Note each diagnostic with its file."""
@@ -170,7 +171,7 @@ def _roots(documents: Mapping[Path, Document]) -> list[Path]:
     An included document is a part of others, unless it has its own `codegen.ifgen`. In a cycle of includes
     the first document counts as a node, so that the cycle is noticed.
     """
-    included = {path: list(include.local_files(documents[path])) for path in documents}
+    included = {path: list(composition.local_files(documents[path])) for path in documents}
     parts = {other for others in included.values() for other in others}
     roots = [path for path, found in documents.items() if path not in parts or found.options is not None]
     reached: set[Path] = set()

@@ -15,8 +15,18 @@ from pydantic.config import JsonDict
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
 from ifgen.nodl.model import ClockName, MismatchPolicy, NodeDescription, Parameter, Style, Timer, Validator
-from ifgen.nodl.syntax import explain
-from ifgen.nodl.syntax.tree import Key, ListNode, MapNode, Node, ScalarNode, plain_value
+from ifgen.nodl.syntax.tree import (
+    Key,
+    ListNode,
+    MapNode,
+    Node,
+    ScalarNode,
+    missing_key,
+    plain_value,
+    unknown_choice,
+    unknown_key,
+    wrong_value,
+)
 from ifgen.nodl.validators import is_custom
 
 Location: TypeAlias = tuple[int | str, ...]
@@ -221,16 +231,16 @@ def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
     match error["type"]:
         case "extra_forbidden" if key is not None:
             model = TimerOptions if what == "a timer" else Options
-            return explain.unknown_key(key, what, model.model_fields)
+            return unknown_key(key, what, model.model_fields)
         case "missing":
-            return explain.missing_key(str(location[len(location) - 1]), what, node.span)
+            return missing_key(str(location[len(location) - 1]), what, node.span)
         case "literal_error":
             options = re.findall(r"'([^']*)'", str(error["ctx"]["expected"]))
             if isinstance(plain_value(node), str):
-                return explain.unknown_choice(cast("Any", node), name, options)
-            return explain.wrong_value(node, name, f"one of the texts {', '.join(options)}")
+                return unknown_choice(cast("Any", node), name, options)
+            return wrong_value(node, name, f"one of the texts {', '.join(options)}")
         case other:
-            return explain.wrong_value(node, name, _EXPECTED.get(other, "something else"))
+            return wrong_value(node, name, _EXPECTED.get(other, "something else"))
 
 
 def _no_identifier(span: Span, key: str, text: str) -> Diagnostic:

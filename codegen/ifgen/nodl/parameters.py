@@ -4,14 +4,30 @@ from __future__ import annotations
 
 from typing import Final
 
+from ifgen.definition.explain import did_you_mean
 from ifgen.definition.problems import FileProblems
-from ifgen.nodl import explain_parameters as explain
+from ifgen.diagnostics import Diagnostic, Label, Span, shorten
 from ifgen.nodl import names, validators, values
 from ifgen.nodl.endpoints import invalid_name
 from ifgen.nodl.model import Parameter, ParameterType, ParameterValue, Validator
-from ifgen.nodl.syntax import shape
-from ifgen.nodl.syntax.tree import Key, MapNode, Node
-from ifgen.nodl.values import BadValue
+from ifgen.nodl.syntax import tree
+from ifgen.nodl.syntax.tree import Key, MapNode, Node, shown, yaml_surprise
+from ifgen.nodl.values import ARRAYS, FIXED, SCALARS, BadValue, spelled
+
+_FOREIGN_TYPES: Final = {
+    "float": "double",
+    "float64": "double",
+    "float32": "double",
+    "number": "double",
+    "boolean": "bool",
+    "integer": "int",
+    "int64": "int",
+    "str": "string",
+    "text": "string",
+    "list": "double_array` or `string_array",
+    "bytes": "byte_array",
+    "bool_array_fixed": "bool_array` with the validator `fixed_size",
+}
 
 KEYS: Final = (
     "type",
@@ -25,7 +41,7 @@ KEYS: Final = (
 
 def read(document: MapNode, problems: FileProblems) -> list[Parameter]:
     """The parameters of a document, without those that have no usable name or type."""
-    node = shape.entries(document, "parameters", "a map from names to parameters", problems)
+    node = tree.entries(document, "parameters", "a map from names to parameters", problems)
     found = (_parameter(key, value, problems) for key, value in (node.entries if node else ()))
     return [parameter for parameter in found if parameter is not None]
 
@@ -35,16 +51,16 @@ def _parameter(key: Key, node: Node, problems: FileProblems) -> Parameter | None
     if problem:
         problems.error(invalid_name, key.name, key.span, problem)
     elif names.reserved_parameter(key.name):
-        problems.error(explain.reserved, key.name, key.span)
+        problems.error(_reserved, key.name, key.span)
     if inner := _first_inside(node):
-        problems.error(explain.nested_group, key, inner)
+        problems.error(_nested_group, key, inner)
         return None
-    fields = shape.table(node, "a parameter", KEYS, ("type",), problems)
+    fields = tree.table(node, "a parameter", KEYS, ("type",), problems)
     if fields is None:
         return None
-    description = shape.text(fields, "description", problems) or ""
-    read_only = shape.flag(fields, "read_only", problems)
-    constraints = shape.text(fields, "additional_constraints", problems) or ""
+    description = tree.text(fields, "description", problems) or ""
+    read_only = tree.flag(fields, "read_only", problems)
+    constraints = tree.text(fields, "additional_constraints", problems) or ""
     type_ = _type(fields, problems)
     if type_ is None:
         return None
@@ -62,18 +78,18 @@ def _first_inside(node: Node) -> Key | None:
 
 
 def _type(fields: MapNode, problems: FileProblems) -> ParameterType | None:
-    text = shape.text(fields, "type", problems)
+    text = tree.text(fields, "type", problems)
     node = fields.get("type")
     if text is None or node is None:
         return None
     type_ = values.parameter_type(text)
     if type_ is None:
-        problems.error(explain.unknown_type, text, node.span)
+        problems.error(_unknown_type, text, node.span)
     return type_
 
 
 def _validators(fields: MapNode, type_: ParameterType, problems: FileProblems) -> tuple[Validator, ...]:
-    node = shape.entries(fields, "validation", "a map from validators to their arguments", problems)
+    node = tree.entries(fields, "validation", "a map from validators to their arguments", problems)
     return validators.read(node, type_, problems) if node else ()
 
 
@@ -84,13 +100,101 @@ def _default(
     if node is None:
         return None
     if type_.base == "none":
-        problems.error(explain.default_of_nothing, node)
+        problems.error(_default_of_nothing, node)
         return None
     value = values.value(node, type_)
     if isinstance(value, BadValue):
-        problems.error(explain.wrong_default, value, type_)
+        problems.error(_wrong_default, value, type_)
         return None
     for validator in checks:
         if not validators.passes(value, validator):
-            problems.error(explain.rejected_default, node, validator)
+            problems.error(_rejected_default, node, validator)
     return value
+
+
+def _unknown_type(text: str, span: Span) -> Diagnostic:
+    """Say that there is no such type of parameters."""
+    known = [*SCALARS, *ARRAYS, *(f"{name}_N" for name in FIXED)]
+    base = text.rstrip("0123456789").rstrip("_")
+    if base in _FOREIGN_TYPES:
+        hint = f"write `{_FOREIGN_TYPES[base]}`"
+    else:
+        array = f"{_FOREIGN_TYPES.get(text[:-2], text[:-2])}_array"
+        is_array = text.endswith("[]") and array in ARRAYS
+        hint = (
+            f"write `{array}`"
+            if is_array
+            else did_you_mean(text, known) or f"the types are {', '.join(known)}"
+        )
+    message = f"`{shorten(text)}` is not a type of parameters"
+    return Diagnostic("invalid-parameter-type", message, Label(span), help=hint)
+
+
+def _nested_group(group: Key, inner: Key) -> Diagnostic:
+    """Say that parameters are not grouped by maps."""
+    name = f"{shorten(group.name)}.{shorten(inner.name)}"
+    return Diagnostic(
+        "unknown-key",
+        f"parameters are not grouped by maps: a parameter has no key `{shorten(inner.name)}`",
+        Label(inner.span, "unknown key"),
+        help=f"write the whole name: `{name}: {{type: ...}}`",
+    )
+
+
+def _reserved(name: str, span: Span) -> Diagnostic:
+    """Say that rclpy declares a parameter itself."""
+    return Diagnostic(
+        "reserved-parameter",
+        f"rclpy declares the parameter `{shorten(name)}` itself",
+        Label(span),
+        help="remove it: each node has it anyway",
+    )
+
+
+def _wrong_default(problem: BadValue, type_: ParameterType) -> Diagnostic:
+    """Say that a default is not of the parameter's type."""
+    return Diagnostic(
+        "wrong-default",
+        f"a default of type `{spelled(type_)}` must be {problem.expected}",
+        Label(problem.node.span, f"this is {shown(problem.node)}"),
+        help=yaml_surprise(problem.node, problem.expected),
+    )
+
+
+def _default_of_nothing(node: Node) -> Diagnostic:
+    """Say that a parameter of type none has no default."""
+    message = "a parameter of type `none` has no value, so it has no default"
+    return Diagnostic("wrong-default", message, Label(node.span))
+
+
+def _rejected_default(node: Node, validator: Validator) -> Diagnostic:
+    """Say that a default does not pass the parameter's own validator."""
+    arguments = ", ".join(map(str, validator.arguments))
+    said = f"`{validator.name}` allows {_allowed(validator.name, arguments)}"
+    return Diagnostic(
+        "rejected-default",
+        f"the default does not pass its own validator: {said}",
+        Label(node.span),
+        (Label(validator.span, "because of this"),) if validator.span else (),
+        "the node could not start: change one of the two",
+    )
+
+
+def _allowed(name: str, arguments: str) -> str:
+    return {
+        "bounds": f"[{arguments}]",
+        "element_bounds": f"[{arguments}] for each element",
+        "lt": f"less than {arguments}",
+        "gt": f"more than {arguments}",
+        "lt_eq": f"at most {arguments}",
+        "gt_eq": f"at least {arguments}",
+        "lower_element_bounds": f"at least {arguments} for each element",
+        "upper_element_bounds": f"at most {arguments} for each element",
+        "one_of": f"only {shorten(arguments)}",
+        "subset_of": f"only {shorten(arguments)} as elements",
+        "unique": "each element once",
+        "not_empty": "any non-empty value",
+        "fixed_size": f"only the size {arguments}",
+        "size_gt": f"more than {arguments} elements or characters",
+        "size_lt": f"less than {arguments} elements or characters",
+    }[name]

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
+from ifgen.definition.explain import did_you_mean
 from ifgen.definition.problems import FileProblems
-from ifgen.nodl import explain_parameters as explain
+from ifgen.diagnostics import Diagnostic, Label, shorten
 from ifgen.nodl import values
 from ifgen.nodl.model import ParameterType, ParameterValue, ScalarValue, Validator
-from ifgen.nodl.syntax.tree import Foreign, Key, ListNode, MapNode, Node, ScalarNode
-from ifgen.nodl.values import BadValue
+from ifgen.nodl.syntax.tree import Foreign, Key, ListNode, MapNode, Node, ScalarNode, shown, yaml_surprise
+from ifgen.nodl.values import BadValue, spelled
 
 Arguments = Literal["none", "one", "pair", "size", "choices"]
 Fits = Literal["number", "numbers", "scalar", "array", "sized"]
@@ -83,6 +84,20 @@ RULES: Final[Mapping[str, Rule]] = {
     "size_lt": Rule("size", "sized", lambda value, sizes: len(elements(value)) < _number(sizes[0])),
 }
 
+_ON_SCALARS: Final = {
+    "lower_element_bounds": "gt_eq",
+    "upper_element_bounds": "lt_eq",
+    "element_bounds": "bounds",
+    "subset_of": "one_of",
+}
+
+_ON_ARRAYS: Final = {
+    "gt_eq": "lower_element_bounds",
+    "lt_eq": "upper_element_bounds",
+    "bounds": "element_bounds",
+    "one_of": "subset_of",
+}
+
 _MIXED: Final = {
     "bounds": ("lt", "gt", "lt_eq", "gt_eq"),
     "element_bounds": ("lower_element_bounds", "upper_element_bounds"),
@@ -95,7 +110,7 @@ def read(node: MapNode, type_: ParameterType, problems: FileProblems) -> tuple[V
     for key, argument in node.entries:
         name = key.name.removesuffix("<>")
         if name in found:
-            problems.error(explain.duplicate_validator, key, found[name][1])
+            problems.error(_duplicate_validator, key, found[name][1])
         elif name in RULES:
             validator = _built_in(key, name, argument, type_, problems)
             if validator is not None:
@@ -103,15 +118,15 @@ def read(node: MapNode, type_: ParameterType, problems: FileProblems) -> tuple[V
         elif re.fullmatch(CUSTOM, key.name):
             arguments = _free_arguments(argument)
             if isinstance(arguments, BadValue):
-                problems.error(explain.invalid_arguments, key.name, arguments)
+                problems.error(_invalid_arguments, key.name, arguments)
             else:
                 found[name] = (Validator(name, arguments, span=key.span), key)
         else:
-            problems.error(explain.unknown_validator, key, RULES)
+            problems.error(_unknown_validator, key, RULES)
     for name, others in _MIXED.items():
         for other in others:
             if name in found and other in found:
-                problems.error(explain.mixed_bounds, found[other][1], found[name][1])
+                problems.error(_mixed_bounds, found[other][1], found[name][1])
     return tuple(validator for validator, _ in found.values())
 
 
@@ -148,16 +163,16 @@ def _built_in(
     rule = RULES[name]
     if not fits(rule, type_):
         fitting = [other for other, known in RULES.items() if fits(known, type_)]
-        problems.error(explain.unfit_validator, key, name, type_, fitting)
+        problems.error(_unfit_validator, key, name, type_, fitting)
         return None
     # A byte array's elements are compared as the integers that they are.
     base = "int" if rule.arguments == "size" else type_.base
     arguments = _arguments(argument, rule.arguments, base)
     if isinstance(arguments, BadValue):
-        problems.error(explain.invalid_arguments, name, arguments)
+        problems.error(_invalid_arguments, name, arguments)
         return None
     if rule.arguments == "pair" and _number(arguments[0]) > _number(arguments[1]):
-        problems.error(explain.empty_bounds, name, argument)
+        problems.error(_empty_bounds, name, argument)
         return None
     return Validator(name, arguments, span=key.span)
 
@@ -217,3 +232,71 @@ def _free_arguments(node: Node) -> tuple[ScalarValue, ...] | BadValue:
             return BadValue(item, "nothing, a number, a text, a boolean, or a list of these")
         found.append(value)
     return tuple(found)
+
+
+def _unknown_validator(key: Key, known: Iterable[str]) -> Diagnostic:
+    """Say that there is no such validator."""
+    known = list(known)
+    name = key.name.removesuffix("<>")
+    hint = did_you_mean(name, known) or (
+        f"the validators are {', '.join(known)}; your own validator needs a namespace: `my::{shorten(name)}`"
+    )
+    return Diagnostic(
+        "unknown-validator", f"there is no validator `{shorten(name)}`", Label(key.span), help=hint
+    )
+
+
+def _duplicate_validator(key: Key, first: Key) -> Diagnostic:
+    """Say that a validator is there twice."""
+    return Diagnostic(
+        "duplicate-key",
+        f"the validator `{key.name.removesuffix('<>')}` is there twice, with and without `<>`",
+        Label(key.span, "again"),
+        (Label(first.span, "first here"),),
+        "remove one of them",
+    )
+
+
+def _unfit_validator(key: Key, name: str, type_: ParameterType, fitting: Iterable[str]) -> Diagnostic:
+    """Say that a validator does not go with a type."""
+    fitting = list(fitting)
+    instead = (_ON_ARRAYS if type_.array else _ON_SCALARS).get(name)
+    if instead in fitting:
+        help = f"for a parameter of type `{spelled(type_)}` write `{instead}`"
+    elif fitting:
+        help = f"the validators that fit are {', '.join(fitting)}"
+    else:
+        help = "a parameter without a value cannot be validated"
+    return Diagnostic(
+        "unfit-validator",
+        f"`{name}` does not fit the type `{spelled(type_)}`",
+        Label(key.span),
+        help=help,
+    )
+
+
+def _invalid_arguments(name: str, problem: BadValue) -> Diagnostic:
+    """Say that a validator takes other arguments."""
+    return Diagnostic(
+        "invalid-arguments",
+        f"`{name}` takes {problem.expected}",
+        Label(problem.node.span, f"this is {shown(problem.node)}"),
+        help=yaml_surprise(problem.node, problem.expected),
+    )
+
+
+def _empty_bounds(name: str, node: Node) -> Diagnostic:
+    """Say that nothing lies between two bounds."""
+    message = f"nothing passes `{name}`: the lower bound lies above the upper one"
+    return Diagnostic("empty-bounds", message, Label(node.span), help="write [lower, upper]")
+
+
+def _mixed_bounds(key: Key, bounds: Key) -> Diagnostic:
+    """Say that two validators that say the same do not go together."""
+    return Diagnostic(
+        "mixed-bounds",
+        f"`{key.name}` cannot be used together with `{bounds.name}`",
+        Label(key.span),
+        (Label(bounds.span, "which sets both limits"),),
+        "use one or the other: generate_parameter_library refuses both",
+    )

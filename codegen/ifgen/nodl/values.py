@@ -7,7 +7,7 @@ import re
 from typing import Final, Literal, NamedTuple, cast
 
 from ifgen.nodl.model import ParameterType, ParameterValue, ScalarValue
-from ifgen.nodl.syntax.parameter_scalars import read_scalar
+from ifgen.nodl.syntax.scalars import read_scalar
 from ifgen.nodl.syntax.tree import ListNode, Node, ScalarNode
 
 SCALARS: Final = ("bool", "int", "double", "string", "none")

@@ -141,8 +141,8 @@ def _differences(definition: Definition) -> Iterator[str]:
     """The differences between the definition in a bag and the one that is installed, if there is one."""
     # Late: a bag whose definitions are those that are installed needs no toolkit.
     from ifgen.evolution.compare import between
+    from ifgen.evolution.edit_diagnostics import diagnostic
     from ifgen.evolution.edits import Category
-    from ifgen.evolution.words import diagnostic
 
     new = installed_definition(definition.type_name)
     if new is None or new.type_hash == definition.type_hash:

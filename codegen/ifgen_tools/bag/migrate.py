@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ifgen.command_kit.tool import ToolError
 from ifgen.config.settings import settle
 from ifgen.dynamic.making import make
-from ifgen.evolution.adapting.steps import PARAMETERS, Function, Functions
-from ifgen.evolution.adapting.versions import TwoVersions
+from ifgen.evolution.adapting.steps import PARAMETERS, Function, Functions, TwoVersions
 from ifgen_runtime.adapters import adapter_for
 from ifgen_runtime.bag.topics import Channel
 from ifgen_runtime.codec import deserialize, serialize

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.evolution.explaining.definitions import Installed, Known, of_document, of_sources
-from ifgen.evolution.explaining.differences import differences
-from ifgen.evolution.explaining.explanation import adapt_command, short
+from ifgen.evolution.explaining.explanation import adapt_command, differences, short
 
 from ifgen_tools import discovery
 from ifgen_tools.doctor.definitions import (

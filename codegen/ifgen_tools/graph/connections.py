@@ -8,8 +8,7 @@ from itertools import groupby, product
 from typing import Literal
 
 from ifgen.nodl import names
-from ifgen.nodl.compatibility import mismatch
-from ifgen.nodl.model import Category, NodeDescription, QosProfile
+from ifgen.nodl.model import Category, NodeDescription, QosProfile, qos_mismatch
 
 from ifgen_tools.graph.reading import Endpoint
 
@@ -125,6 +124,6 @@ def _why_never(source: Endpoint, target: Endpoint) -> str | None:
     if source.qos is None or target.qos is None:
         return None
     if KINDS[source.category] == "topic":
-        return mismatch(source.qos, target.qos)
+        return qos_mismatch(source.qos, target.qos)
     # Requests go one way and responses the other, both with the profile of the end that sends them.
-    return mismatch(source.qos, target.qos) or mismatch(target.qos, source.qos)
+    return qos_mismatch(source.qos, target.qos) or qos_mismatch(target.qos, source.qos)

@@ -10,7 +10,7 @@ import yaml
 from ifgen.diagnostics import shown_character
 from ifgen.nodl import names
 from ifgen.nodl.model import Category, QosProfile
-from ifgen.nodl.syntax.texts import needs_escapes
+from ifgen.nodl.syntax.scalars import needs_escapes
 
 from ifgen_tools.graph.reading import Endpoint
 from ifgen_tools.nodl.parameters import RunningParameter

@@ -12,7 +12,7 @@ import pytest
 from ifgen.cli.evolution.explain import explain
 from ifgen.cli.main import main
 from ifgen.evolution.explaining.definitions import Installed, of_sources
-from ifgen.evolution.explaining.differences import differences
+from ifgen.evolution.explaining.explanation import differences
 from ifgen_runtime.mismatch.sides import Definition
 
 from .definitions import BATTERY, NEW, OLD, made, met, without_definition, without_sources

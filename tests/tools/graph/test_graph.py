@@ -10,8 +10,7 @@ from xml.etree import ElementTree
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from ifgen.nodl.compatibility import mismatch
-from ifgen.nodl.model import Category, QosProfile
+from ifgen.nodl.model import Category, QosProfile, qos_mismatch
 from ifgen_tools.graph.connections import Graph, of_endpoints
 from ifgen_tools.graph.layout import layout
 from ifgen_tools.graph.reading import Endpoint
@@ -92,7 +91,7 @@ def profile(**values: object) -> QosProfile:
     ],
 )
 def test_compatibility(offered: dict[str, object], requested: dict[str, object], meets: bool) -> None:
-    assert (mismatch(profile(**offered), profile(**requested)) is None) == meets
+    assert (qos_mismatch(profile(**offered), profile(**requested)) is None) == meets
 
 
 def test_renderings_hold_every_box_edge_and_problem(graph: Graph) -> None:

@@ -9,12 +9,11 @@ from pathlib import Path
 from ifgen.definition.interfaces import Interface, Registry
 from ifgen.definition.names import snake_case
 from ifgen.diagnostics import InputError, UsageError
-from ifgen.evolution.adapting.finding import Finder
 from ifgen.evolution.adapting.module import adapter_module, part_name
-from ifgen.evolution.adapting.steps import Functions
+from ifgen.evolution.adapting.steps import Functions, Today, TwoVersions
 from ifgen.evolution.adapting.tests import adapter_tests
-from ifgen.evolution.adapting.versions import Today, TwoVersions
-from ifgen.evolution.interfaces import versions as parts_of
+from ifgen.evolution.adapting.type_versions import VersionFinder
+from ifgen.evolution.compare import parts_of
 from ifgen.generator_py.adapters import AdapterPackage, AdapterTests, plan_frozen, short
 from ifgen.generator_py.artifact import Artifact
 
@@ -45,7 +44,7 @@ def plan(
 
     `base` is the folder of the project. Raises UsageError and InputError.
     """
-    finder = Finder(paths, include, base)
+    finder = VersionFinder(paths, include, base)
     now = finder.today(type_name)
     earlier = finder.earlier(reference, now)
     versions = TwoVersions(
@@ -85,7 +84,7 @@ def _tests(path: str, tests: AdapterTests) -> Artifact:
     return Artifact(path, "adapter_package/tests.py.j2", {"test": tests}, own_package="")
 
 
-def _today(finder: Finder, registry: Registry) -> Today:
+def _today(finder: VersionFinder, registry: Registry) -> Today:
     known: dict[str, tuple[Interface, Registry] | None] = {}
 
     def today(name: str) -> tuple[Interface, Registry] | None:

@@ -14,7 +14,9 @@ from typing import Final, NoReturn, cast
 
 from ifgen.definition import derive, names
 from ifgen.definition.described.values import Value
+from ifgen.definition.impossible import check_cycles
 from ifgen.definition.interfaces import (
+    Action,
     Constant,
     Field,
     Folder,
@@ -23,11 +25,11 @@ from ifgen.definition.interfaces import (
     Registry,
 )
 from ifgen.definition.literals import BadValue
+from ifgen.definition.references import references
+from ifgen.definition.type_description import TypeHashes, referenced_types
 from ifgen.definition.types import BasicType, FieldType, UnboundedString, UnboundedWString
-from ifgen.diagnostics import Diagnostic, InputError, Source, Span, shorten, shown_path
-from ifgen.evolution.lock.checks import AGAIN, check, invalid
-from ifgen.evolution.lock.notation import is_type_name, read_type, read_value
-from ifgen.evolution.lock.text import END, VERSION
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, shorten, shown_path
+from ifgen.evolution.lock.text import END, VERSION, is_type_name, read_type, read_value, written_parts
 from ifgen.reading.packages import FOLDERS
 from ifgen.reading.storage import read_source
 
@@ -35,6 +37,7 @@ _CONFLICT: Final = ("<<<<<<<", "=======", ">>>>>>>", "|||||||")
 _HASH: Final = re.compile(r"RIHS01_[0-9a-f]{64}")
 _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 _DEFINITION: Final = re.compile(r"(?P<type>\S+) (?P<name>[^\s=]+)(?:(?P<sign>[= ])(?P<value>.+))?")
+_AGAIN: Final = "run `ifgen lock` again; it does not read this file"
 _PARTS: Final = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
 
 
@@ -124,7 +127,7 @@ class _Parser:
             self._fail(size, "", f"the file is cut off: its last line is not `{END}`")
         self._finish()
         registry = Registry.of_interfaces(self._interfaces.values())
-        check(registry, self._hashes)
+        _check(registry, self._hashes)
         return Lock(self._source, registry, {name: value for name, (value, _) in self._hashes.items()})
 
     def _lines(self) -> Iterator[tuple[int, str]]:
@@ -240,7 +243,56 @@ class _Parser:
         self._interfaces[interface.type_name] = interface
 
     def _fail(
-        self, start: int, text: str, message: str, help: str = AGAIN, *, end: int | None = None
+        self, start: int, text: str, message: str, help: str = _AGAIN, *, end: int | None = None
     ) -> NoReturn:
         end = start + len(text) if end is None else end
-        raise InputError([invalid(Span(self._source, start, end), message, help)])
+        raise InputError([_invalid(Span(self._source, start, end), message, help)])
+
+
+def _invalid(span: Span | None, message: str, help: str = _AGAIN, label: str = "") -> Diagnostic:
+    """A mistake in a lock file."""
+    return Diagnostic("invalid-lock", message, Label(span, label) if span else None, help=help)
+
+
+def _check(registry: Registry, hashes: Mapping[str, tuple[str, Span]]) -> None:
+    """Raise InputError with the first mistake; `hashes` are those in the file, with their places."""
+    messages = {part.type_name: part for interface in registry for part in _messages(interface)}
+    missing = next(_missing(registry, messages), None)
+    if missing is not None:
+        raise InputError([missing])
+    for cycle in check_cycles(messages):
+        raise InputError([_invalid(cycle.primary.span if cycle.primary else None, cycle.message)])
+    _check_hashes(registry, hashes)
+
+
+def _messages(interface: Interface) -> tuple[Message, ...]:
+    return (interface,) if isinstance(interface, Message) else interface.messages
+
+
+def _missing(registry: Registry, messages: Mapping[str, Message]) -> Iterator[Diagnostic]:
+    """The types that are needed, and not in the file."""
+    for message in messages.values():
+        for user, type_ in references(message):
+            if type_.type_name not in messages:
+                text = f"{message.type_name} needs {type_.type_name}, which is not in the file"
+                yield _invalid(user.type_span or message.span, text)
+    for interface in registry:
+        for support in derive.ACTION_SUPPORT if isinstance(interface, Action) else ():
+            name = "/".join(support)
+            if registry.get(name) is None:
+                yield _invalid(
+                    interface.span, f"{interface.type_name} needs {name}, which is not in the file"
+                )
+
+
+def _check_hashes(registry: Registry, hashes: Mapping[str, tuple[str, Span]]) -> None:
+    """Report a hash that does not fit: the one of the smallest type, because others contain that."""
+    computed = TypeHashes(registry)
+    described = (item for interface in registry for item in (*written_parts(interface), interface))
+    wrong = [item for item in described if computed.of(item) != hashes[item.type_name][0]]
+    if wrong:
+        edited = min(wrong, key=lambda item: len(referenced_types(item, registry)))
+        message = f"the hash of {edited.type_name} does not fit its definition here"
+        label = f"the definition has the hash {computed.of(edited)}"
+        span = hashes[edited.type_name][1]
+        raise InputError([_invalid(span, message, f"somebody edited the file; {_AGAIN}", label)])

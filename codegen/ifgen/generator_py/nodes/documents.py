@@ -16,7 +16,7 @@ from ifgen.nodl.model import (
     QosProfile,
     Validator,
 )
-from ifgen.nodl.syntax.texts import comment, quoted
+from ifgen.nodl.syntax.scalars import comment, quoted
 from ifgen.nodl.validators import is_custom
 from ifgen.nodl.values import spelled
 

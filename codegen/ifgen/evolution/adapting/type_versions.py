@@ -29,7 +29,7 @@ _MOST_REVISIONS: Final = 50
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class TypeVersion:
     """A version of an interface, and the registry with what it needs. `origin` says where it is from."""
 
     interface: Interface
@@ -49,17 +49,17 @@ class Found:
         )
 
 
-class Finder:
+class VersionFinder:
     """Finds versions of a type. `paths` and `include` are where it is now, `base` is the project's folder."""
 
     def __init__(self, paths: Sequence[Path], include: Sequence[Path], base: Path) -> None:
         self._paths, self._include, self._base = paths, include, base
 
-    def today(self, name: str) -> Found:
+    def today(self, name: str) -> TypeVersion:
         """An interface as it is now. Raises UsageError if there is none, and InputError if it is wrong."""
         return _single(select(name, self._paths, self._include), name)
 
-    def earlier(self, reference: str, now: Found) -> Found:
+    def earlier(self, reference: str, now: TypeVersion) -> TypeVersion:
         """The version that a reference names. Raises UsageError and InputError."""
         type_name = now.interface.type_name
         found = self._earlier(reference, now)
@@ -72,7 +72,7 @@ class Finder:
             raise UsageError([Diagnostic("nothing-to-adapt", message, help=advice)])
         return found
 
-    def _earlier(self, reference: str, now: Found) -> Found:
+    def _earlier(self, reference: str, now: TypeVersion) -> TypeVersion:
         type_name = now.interface.type_name
         if reference.endswith(".json") and os.path.isfile(reference):  # noqa: PTH113 - any text will do
             return _described(Path(reference), type_name)
@@ -84,7 +84,7 @@ class Finder:
             return self._at(text, reference, type_name)
         return self._of_hash(reference.removesuffix("..."), now)
 
-    def _at(self, text: str, reference: str, type_name: str) -> Found:
+    def _at(self, text: str, reference: str, type_name: str) -> TypeVersion:
         """The type that `text` names, of the version that `reference` is for users."""
         try:
             return _single(select(text, self._paths, self._include), reference)
@@ -95,7 +95,7 @@ class Finder:
             advice = "name a version that has it; if it had another name, write REF:TYPE"
             raise UsageError([Diagnostic("unknown-type", message, help=advice)]) from None
 
-    def _of_hash(self, text: str, now: Found) -> Found:
+    def _of_hash(self, text: str, now: TypeVersion) -> TypeVersion:
         """The version with this hash, or the revision of this name if no version has it."""
         type_name = now.interface.type_name
         is_revision = not text.startswith("RIHS") and revisions.is_revision(self._place(), text)
@@ -124,7 +124,7 @@ class Finder:
     def _place(self) -> Path:
         return self._paths[0] if self._paths else self._base
 
-    def _known(self, type_name: str) -> Iterator[Found]:
+    def _known(self, type_name: str) -> Iterator[TypeVersion]:
         """The versions in the lock file, in earlier ones, and among installed packages."""
         lock = self._base / NAME
         if lock.is_file():
@@ -135,7 +135,7 @@ class Finder:
         with suppress(InputError, UsageError):
             yield _single(select(type_name, (), self._include), "installed")
 
-    def _in_history(self, type_name: str) -> Iterator[Found]:
+    def _in_history(self, type_name: str) -> Iterator[TypeVersion]:
         """The versions in the commits that changed the file of the type."""
         with suppress(InputError, UsageError):
             source = self.today(type_name).interface.source
@@ -146,15 +146,15 @@ class Finder:
                     yield _single(select(f"{commit}:{type_name}", self._paths, self._include), commit)
 
 
-def _in_lock(source: Source, type_name: str, origin: str) -> Iterator[Found]:
+def _in_lock(source: Source, type_name: str, origin: str) -> Iterator[TypeVersion]:
     if f"\n{type_name} RIHS01_" not in f"\n{source.text}":
         return  # reading takes longer
     registry = lock_file.parse(source).registry
     if (interface := registry.get(type_name)) is not None:
-        yield Found(interface, registry, origin)
+        yield TypeVersion(interface, registry, origin)
 
 
-def _single(selected: Selection, origin: str) -> Found:
+def _single(selected: Selection, origin: str) -> TypeVersion:
     """The interface that was selected, the whole of a service or an action if a part was named."""
     if not selected.is_one:
         message = f"{shorten(selected.label)} is not a single type"
@@ -162,10 +162,10 @@ def _single(selected: Selection, origin: str) -> Found:
     found = next(iter(selected.interfaces.values()))
     if isinstance(found, Message) and found.folder != "msg":
         found = selected.registry.interface(f"{found.package}/{found.folder}/{interface_name(found)}")
-    return Found(found, selected.registry, origin)
+    return TypeVersion(found, selected.registry, origin)
 
 
-def _described(path: Path, type_name: str) -> Found:
+def _described(path: Path, type_name: str) -> TypeVersion:
     """The version in a type description: of `ifgen show --json`, of a node, or in a file of rosidl."""
     try:
         document: Any = json.loads(read_source(path).text)
@@ -179,7 +179,7 @@ def _described(path: Path, type_name: str) -> Found:
     if described.type_name != type_name:
         message = f"{path} describes {described.type_name}, not {type_name}"
         raise UsageError([Diagnostic("unknown-type", message, help="name the type that it describes")])
-    return Found(described, registry, path.name)
+    return TypeVersion(described, registry, path.name)
 
 
 def _told_hash(hashes: object, type_name: str) -> str | None:

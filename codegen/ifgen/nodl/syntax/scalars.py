@@ -1,6 +1,7 @@
-"""Scalars of parameters as nodes read them in YAML, which is not as YAML 1.1 has it: `1e5` is a number.
+"""Scalars of YAML: those of parameters as nodes read them, and texts as all readers of YAML understand them.
 
-ifgen must run without ifgen_runtime, whose parameter_scalars has the same text. A test compares the two.
+To nodes, `1e5` is a number and `y` is true, as rcl has it. ifgen must run without ifgen_runtime, whose
+parameter_scalars reads the same values. A test compares the two.
 """
 
 from __future__ import annotations
@@ -74,3 +75,29 @@ def _is_exact(text: str, number: float) -> bool:
     if shift >= 0:
         return shift < 64 and mantissa << shift == numerator
     return mantissa == numerator << -shift if -shift < mantissa.bit_length() else False
+
+
+# Characters that YAML reads unchanged, neither folded nor stripped, both in PyYAML and in the libyaml of ROS.
+_PLAIN: Final = "\x20-\x7e\xa0-\u2027\u202a-\ud7ff\ue000-\ufefe\uff00-\ufffd\U00010000-\U0010ffff"
+_ESCAPED: Final = re.compile(f'[^{_PLAIN}]|["\\\\]')
+_LEFT_OUT: Final = re.compile(f"[^{_PLAIN}]")
+_SHORT: Final = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\b": "\\b", "\f": "\\f"}
+
+
+def needs_escapes(text: str) -> bool:
+    """Whether YAML can hold the text in double quotes only."""
+    return _LEFT_OUT.search(text) is not None
+
+
+def quoted(text: str) -> str:
+    """The text in double quotes, with escapes that JSON has too where it has them."""
+    return f'"{_ESCAPED.sub(_escape, text)}"'
+
+
+def comment(text: str) -> list[str]:
+    """The lines of a comment with this text, without `#` and without what YAML has no place for."""
+    return [_LEFT_OUT.sub("", line.expandtabs(4)) for line in text.splitlines()]
+
+
+def _escape(match: re.Match[str]) -> str:
+    return _SHORT.get(match[0]) or f"\\u{ord(match[0]):04x}"

@@ -1,7 +1,12 @@
-"""From YAML to a tree with places: YAML 1.1 as PyYAML's safe_load reads it, which `ros2 nodl` uses."""
+"""From the text of a document to its tree with places, by the events of PyYAML.
+
+YAML 1.1 is read as PyYAML's safe_load reads it, which `ros2 nodl` uses. JSON is almost YAML, but stricter:
+the standard library checks it, and its events come from its words.
+"""
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -12,7 +17,7 @@ import yaml
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
-from ifgen.nodl.syntax import explain, texts
+from ifgen.nodl.syntax import explain_syntax
 from ifgen.nodl.syntax.tree import (
     MAX_DEPTH,
     MAX_VALUES,
@@ -30,6 +35,14 @@ _CONSTRUCTOR: Final = yaml.constructor.SafeConstructor()
 _TAG: Final = "tag:yaml.org,2002:"
 _WRITTEN_TAG: Final = re.compile(r"!\S*")
 _LEADING_ZERO: Final = re.compile(r"[-+]?0[0-9_]+")
+_SURROGATE: Final = re.compile("[\ud800-\udfff]")
+_JSON_TOKEN: Final = re.compile(r'"(?:[^"\\]|\\.)*"?|[\[\]{}]|[^\s\[\]{},:"]+', re.DOTALL)
+_JSON_ERRORS: Final = {
+    "Expecting value": "a value belongs here: a text in double quotes, a number, a list, a map",
+    "Expecting property name": "a key in double quotes belongs here",
+    "Expecting ':'": "a `:` belongs after a key",
+    "Extra data": "there is more after the document",
+}
 
 
 class UnreadableError(Exception):
@@ -41,8 +54,13 @@ class UnreadableError(Exception):
 
 
 def parse(source: Source, problems: FileProblems) -> Node | None:
-    """The one document in a YAML text; None if it is empty, UnreadableError if it cannot be read on."""
+    """The one document in a text, which is JSON in files of that extension; None if it is empty.
+
+    Raises UnreadableError if it cannot be read on.
+    """
     try:
+        if source.path.suffix == ".json":
+            return _JsonComposer(source, problems).compose()
         return _Composer(source, problems).compose()
     except yaml.YAMLError as error:
         raise UnreadableError(_syntax(error, source)) from None
@@ -74,7 +92,7 @@ class _Composer:
                 case yaml.DocumentStartEvent():
                     documents += 1
                     if documents > 1:
-                        raise UnreadableError(explain.second_document(self._span(event)))
+                        raise UnreadableError(explain_syntax.second_document(self._span(event)))
                 case yaml.AliasEvent():
                     self._add(self._aliased(event), event)
                 case yaml.ScalarEvent():
@@ -85,7 +103,7 @@ class _Composer:
                     self._named(event, None)
                     self._open.append(_Open(event))
                     if len(self._open) > MAX_DEPTH:
-                        raise UnreadableError(explain.too_deep(self._span(event)))
+                        raise UnreadableError(explain_syntax.too_deep(self._span(event)))
                 case yaml.CollectionEndEvent():
                     opened = self._open.pop()
                     self._add(self._named(opened.start, self._closed(opened, event)), event)
@@ -103,13 +121,15 @@ class _Composer:
             place: int = loader.get_mark().index
             span = Span(self._source, place, place + 1)
             if self._source.text[place - 2 : place] == "\\U":
-                raise UnreadableError(explain.code_point(Span(self._source, place - 2, place + 8))) from None
-            raise UnreadableError(explain.syntax("YAML", "the number is too large", span)) from None
+                raise UnreadableError(
+                    explain_syntax.code_point(Span(self._source, place - 2, place + 8))
+                ) from None
+            raise UnreadableError(explain_syntax.syntax("YAML", "the number is too large", span)) from None
 
     def _add(self, node: Node, event: yaml.Event) -> None:
         self._values += size_of(node) if isinstance(event, yaml.AliasEvent) else 1
         if self._values > MAX_VALUES:
-            raise UnreadableError(explain.too_large(self._span(event)))
+            raise UnreadableError(explain_syntax.too_large(self._span(event)))
         if self._open:
             self._open[-1].values.append(node)
         else:
@@ -127,10 +147,10 @@ class _Composer:
     def _aliased(self, event: yaml.AliasEvent) -> Node:
         name = str(event.anchor)
         if name not in self._anchors:
-            raise UnreadableError(explain.unknown_anchor(name, list(self._anchors), self._span(event)))
+            raise UnreadableError(explain_syntax.unknown_anchor(name, list(self._anchors), self._span(event)))
         node = self._anchors[name]
         if node is None:
-            raise UnreadableError(explain.alias_in_itself(name, self._span(event)))
+            raise UnreadableError(explain_syntax.alias_in_itself(name, self._span(event)))
         return node
 
     def _tagged(self, event: yaml.ScalarEvent | yaml.CollectionStartEvent) -> None:
@@ -138,14 +158,16 @@ class _Composer:
             span = self._span(event)
             found = _WRITTEN_TAG.search(self._source.text, span.start, span.end)
             tag = Span(self._source, *found.span()) if found else span
-            self._problems.error(explain.tag, tag, found[0] if found else event.tag)
+            self._problems.error(explain_syntax.tag, tag, found[0] if found else event.tag)
 
     def _scalar(self, event: yaml.ScalarEvent) -> ScalarNode:
         span = self._value_span(event)
-        text = texts.carried(event.value, span, self._problems)
-        plain = bool(event.implicit[0]) and not event.style
-        if not plain:
+        text = _carried(event.value, span, self._problems)
+        if event.style or not event.implicit[0]:
             return ScalarNode(text, span, plain=False)
+        return self._plain(text, span)
+
+    def _plain(self, text: str, span: Span) -> ScalarNode:
         tag = str(_RESOLVER.resolve(yaml.ScalarNode, text, (True, False))).removeprefix(_TAG)  # type: ignore[no-untyped-call]
         return ScalarNode(self._value(tag, text, span), span, written=text)
 
@@ -162,7 +184,7 @@ class _Composer:
                 case "int":
                     value = int(_CONSTRUCTOR.construct_yaml_int(node))
                     if _LEADING_ZERO.fullmatch(text) and int(text, 10) != value:
-                        self._problems.error(explain.unclear_number, value, span, text)
+                        self._problems.error(explain_syntax.unclear_number, value, span, text)
                     return value
                 case "float":
                     return float(_CONSTRUCTOR.construct_yaml_float(node))
@@ -171,7 +193,7 @@ class _Composer:
                 case _:
                     return text
         except ValueError:  # an integer of thousands of digits, `0b`, `0x_`
-            self._problems.error(explain.bad_number, span, shorten(text))
+            self._problems.error(explain_syntax.bad_number, span, shorten(text))
             return 0
 
     def _closed(self, opened: _Open, end: yaml.Event) -> ListNode | MapNode:
@@ -189,7 +211,7 @@ class _Composer:
             if name is None:
                 continue
             if name.name in entries:
-                self._problems.error(explain.duplicate_key, name, entries[name.name][0])
+                self._problems.error(explain_syntax.duplicate_key, name, entries[name.name][0])
             else:
                 entries[name.name] = (name, value)
         for key_and_value in chain.from_iterable(other.entries for other in merged):
@@ -201,13 +223,13 @@ class _Composer:
         maps = value.items if isinstance(value, ListNode) else (value,)
         found = [item for item in maps if isinstance(item, MapNode)]
         if len(found) < len(maps):
-            self._problems.error(explain.merge_key, value.span)
+            self._problems.error(explain_syntax.merge_key, value.span)
         return found
 
     def _key(self, node: Node) -> Key | None:
         if isinstance(node, ScalarNode) and isinstance(node.value, str):
             return Key(node.value, node.span)
-        self._problems.error(explain.no_text_key, node)
+        self._problems.error(explain_syntax.no_text_key, node)
         return None
 
     def _span(self, start: yaml.Event, end: yaml.Event | None = None) -> Span:
@@ -224,6 +246,85 @@ class _Composer:
         return Span(self._source, start, start + len(first_line))
 
 
+class _JsonComposer(_Composer):
+    """The same from JSON."""
+
+    def _events(self) -> Iterator[yaml.Event]:
+        text = self._source.text
+        start = 1 if text.startswith("\ufeff") else 0
+        problem = self._problem(start) if text[start:].strip(" \t\r\n") else None
+        for token in _JSON_TOKEN.finditer(text, start):
+            if problem is not None and token.end() > problem[0]:
+                break
+            begin, end = (yaml.Mark("", at, 0, 0, None, 0) for at in token.span())
+            match token[0][0]:
+                case "{":
+                    yield yaml.MappingStartEvent(None, None, True, begin, end)
+                case "[":
+                    yield yaml.SequenceStartEvent(None, None, True, begin, end)
+                case "}":
+                    yield yaml.MappingEndEvent(begin, end)
+                case "]":
+                    yield yaml.SequenceEndEvent(begin, end)
+                case '"':
+                    yield yaml.ScalarEvent(None, None, (False, True), json.loads(token[0]), begin, end, '"')
+                case _:
+                    yield yaml.ScalarEvent(None, None, (True, False), token[0], begin, end)
+        if problem is not None:
+            raise UnreadableError(_no_json(problem[1], problem[0], self._source))
+
+    def _problem(self, start: int) -> tuple[int, str] | None:
+        """The place from which on a text is no JSON, and the words of the standard library for that."""
+        text = self._source.text
+        constants: list[str] = []
+        problem: tuple[int, str] | None = None
+        try:
+            json.loads(text[start:], parse_int=str, parse_float=str, parse_constant=constants.append)
+        except json.JSONDecodeError as error:
+            problem = start + error.pos, error.msg
+        except RecursionError:
+            pass  # the composer finds the place where it is too deep
+        if constants:  # NaN and Infinity, which are JSON to Python
+            words = (
+                token for token in _JSON_TOKEN.finditer(text, start) if token[0].startswith(constants[0])
+            )
+            return next(words).start(), "Expecting value"
+        return problem
+
+    def _plain(self, text: str, span: Span) -> ScalarNode:
+        try:
+            return ScalarNode(json.loads(text), span)
+        except ValueError:  # an integer of thousands of digits
+            self._problems.error(explain_syntax.bad_number, span, shorten(text))
+            return ScalarNode(0, span)
+
+
+def _no_json(message: str, at: int, source: Source) -> Diagnostic:
+    """An error of the standard library, in our words."""
+    text = source.text
+    if message.startswith(
+        "Illegal trailing comma"
+    ):  # CPython 3.13 names the comma, not what is missing after it
+        at = len(text) - len(text[at + 1 :].lstrip(" \t\r\n"))
+        message = "Expecting property name" if text[at] == "}" else "Expecting value"
+    for theirs, ours in _JSON_ERRORS.items():
+        if message.startswith(theirs):
+            message = ours
+    if message.startswith("Expecting ','"):
+        opened: list[int] = []
+        for token in _JSON_TOKEN.finditer(text, 0, at):
+            if token[0] in "[{":
+                opened.append(token.start())
+            elif token[0] in "]}":
+                opened.pop()
+        closing = "}" if text[opened[-1]] == "{" else "]"
+        line = source.position(opened[-1])[0]
+        message = f"`,` or `{closing}` belongs here, for what was opened on line {line}"
+    message = message[:1].lower() + message[1:].removesuffix(" at")
+    at = min(at, len(text))
+    return explain_syntax.syntax("JSON", message, Span(source, at, at + 1))
+
+
 def _range(first: yaml.Event, last: yaml.Event) -> tuple[int, int]:
     assert first.start_mark is not None and last.end_mark is not None
     return first.start_mark.index, last.end_mark.index
@@ -233,17 +334,28 @@ def _syntax(error: yaml.YAMLError, source: Source) -> Diagnostic:
     if isinstance(error, yaml.reader.ReaderError):
         place = min(int(error.position), len(source.text))
         code = ord(source.text[place]) if place < len(source.text) else 0
-        return explain.no_yaml_character(Span(source, place, place + 1), code)
+        return explain_syntax.no_yaml_character(Span(source, place, place + 1), code)
     if not isinstance(error, yaml.MarkedYAMLError) or error.problem_mark is None:
-        return explain.syntax("YAML", str(error), Span(source, 0, 0))
+        return explain_syntax.syntax("YAML", str(error), Span(source, 0, 0))
     # A part that is missing at the end of the file is shown after its last word.
     place = error.problem_mark.index
     place = place if source.text[place:].strip() else len(source.text.rstrip())
     label = Span(source, place, place + 1)
     if source.text[place : place + 1] == "\t":
-        return explain.tab(label)
+        return explain_syntax.tab(label)
     context = None
     if error.context_mark is not None and error.context_mark.index < place:
         start = error.context_mark.index
         context = Label(Span(source, start, start + 1), error.context or "")
-    return explain.syntax("YAML", error.problem or "it cannot be read", label, context)
+    return explain_syntax.syntax("YAML", error.problem or "it cannot be read", label, context)
+
+
+def _carried(text: str, span: Span, problems: FileProblems) -> str:
+    """The text, with what no string of ROS can hold replaced and reported: NUL, and half of a character."""
+    if "\0" in text:
+        problems.error(explain_syntax.nul, span)
+        text = text.replace("\0", "\ufffd")
+    if _SURROGATE.search(text):
+        problems.error(explain_syntax.surrogate, span)
+        text = _SURROGATE.sub("\ufffd", text)
+    return text

@@ -1,17 +1,21 @@
-"""Explanations of mistakes in the form of a document: its syntax, its keys, the kinds of its values."""
+"""Explanations of what is no YAML, no JSON, or goes beyond the limits of a document."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
-from typing import Final
 
 from ifgen.definition.explain import did_you_mean
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
-from ifgen.nodl.syntax.tree import MAX_CHARACTERS, MAX_DEPTH, MAX_VALUES, Key, Node, ScalarNode, shown
-
-_JSON_NUMBER: Final = re.compile(r"[-+]?\d+(\.\d+)?[eE][-+]?\d+")
-_OCTAL: Final = re.compile(r"0o[0-7]+")
+from ifgen.nodl.syntax.tree import (
+    MAX_CHARACTERS,
+    MAX_DEPTH,
+    MAX_VALUES,
+    Key,
+    Node,
+    ScalarNode,
+    shown,
+    source_text,
+)
 
 
 def syntax(language: str, message: str, span: Span, context: Label | None = None) -> Diagnostic:
@@ -148,88 +152,10 @@ def no_text_key(node: Node) -> Diagnostic:
     """Say that a key is no text."""
     if not isinstance(node, ScalarNode):
         return Diagnostic("no-text-key", f"a key must be a text, this is {shown(node)}", Label(node.span))
-    written = shorten(_written(node))
+    written = shorten(source_text(node))
     return Diagnostic(
         "no-text-key",
         f"a key must be a text, but in YAML 1.1 `{written}` is {shown(node)}",
         Label(node.span),
         help=f'write it in quotes: "{written}"',
     )
-
-
-def unknown_key(key: Key, what: str, known: Iterable[str]) -> Diagnostic:
-    """Say that a map cannot have a key."""
-    known = list(known)
-    return Diagnostic(
-        "unknown-key",
-        f"{what} has no key `{shorten(key.name)}`",
-        Label(key.span, "unknown key"),
-        help=did_you_mean(key.name, known) or f"the keys are {', '.join(known)}",
-    )
-
-
-def missing_key(name: str, what: str, span: Span, help: str | None = None) -> Diagnostic:
-    """Say that a map lacks a key."""
-    return Diagnostic("missing-key", f"{what} needs the key `{name}`", Label(span), help=help)
-
-
-def wrong_value(node: Node, name: str, expected: str) -> Diagnostic:
-    """Say that a value is not of the kind that belongs there."""
-    return Diagnostic(
-        "wrong-value",
-        f"{name} must be {expected}",
-        Label(node.span, f"this is {shown(node)}"),
-        help=yaml_surprise(node, expected),
-    )
-
-
-def out_of_range(node: ScalarNode, name: str, minimum: int, maximum: int) -> Diagnostic:
-    """Say that an integer is too small or too large."""
-    assert isinstance(node.value, int | float)
-    limit = f"{minimum} or more" if node.value < minimum else f"{maximum} or less"
-    return Diagnostic(
-        "wrong-value",
-        f"{name} must be {limit}",
-        Label(node.span, f"this is {shorten(_written(node))}"),
-        help="to leave it open, write 0 or leave out the key" if minimum == 0 else None,
-    )
-
-
-def unknown_choice(node: ScalarNode, name: str, options: Iterable[str]) -> Diagnostic:
-    """Say that a value is none of those that there are."""
-    options = list(options)
-    value = str(node.value)
-    close = did_you_mean(value.upper() if options[0].isupper() else value, options)
-    listed = f"{', '.join(options[:-1])} or {options[-1]}" if len(options) > 1 else options[0]
-    return Diagnostic(
-        "unknown-value", f"{name} must be {listed}, not `{shorten(value)}`", Label(node.span), help=close
-    )
-
-
-def yaml_surprise(node: Node, expected: str) -> str | None:
-    """Advice for a word that YAML reads differently from people."""
-    if not isinstance(node, ScalarNode) or not node.plain:
-        return None
-    written = _written(node)
-    if isinstance(node.value, str):
-        if "number" not in expected and "integer" not in expected:
-            return None
-        is_of_int = "64 bits" in expected  # a parameter, of which no float is a value
-        if _JSON_NUMBER.fullmatch(written) and not is_of_int:
-            return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{_as_float(written)}`"
-        if _OCTAL.fullmatch(written):
-            return f"YAML 1.1 takes `{shorten(written)}` for a text: write `{int(written, 8)}`"
-        return None
-    if "text" in expected and node.value is not None:
-        return f'YAML takes `{shorten(written)}` for {shown(node)}: write it in quotes, "{shorten(written)}"'
-    return None
-
-
-def _as_float(written: str) -> str:
-    """A number of JSON as YAML 1.1 wants it: 1e3 is 1.0e+3."""
-    mantissa, _, power = written.lower().partition("e")
-    return f"{mantissa if '.' in mantissa else mantissa + '.0'}e{power if power[0] in '+-' else '+' + power}"
-
-
-def _written(node: ScalarNode) -> str:
-    return node.span.source.text[node.span.start : node.span.end]
