@@ -18,16 +18,16 @@ def knows_everybody(domain: int) -> bool:
     """Whether the graph of a ROS domain has everybody who was there before this process's first node."""
     from rmw_local.domain import Domain
 
-    reach = Domain.numbered(domain).reach
-    return reach is None or reach.knows_everybody()
+    found = Domain.numbered(domain).discovery
+    return found is None or found.knows_everybody()
 
 
 def lacks_zenoh(domain: int) -> bool:
     """Whether other processes are there, but not reached because Zenoh is not installed."""
     from rmw_local.domain import Domain
 
-    reach = Domain.numbered(domain).reach
-    return reach is not None and reach.lacks_zenoh()
+    found = Domain.numbered(domain).discovery
+    return found is not None and found.lacks_zenoh()
 
 
 def survey(domain: int) -> Callable[[], Iterable[bytes]]:

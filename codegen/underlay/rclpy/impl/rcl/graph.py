@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from rmw_local.domain import Domain
-from rmw_local.endpoint import Endpoint
 from rmw_local.message import MessageType, service_with_hash
 from rmw_local.qos import HISTORY_UNKNOWN, QosProfile
 from rmw_local.service import ServiceEndpoint
+from rmw_local.topic import Endpoint
 
-from .errors import NodeNameNonExistentError, RCLError
+from .handle import NodeNameNonExistentError, RCLError
 from .names import (
     as_string,
     rclpy_get_validation_error_for_full_topic_name,
@@ -44,7 +44,7 @@ class _Snapshot:
             raise RCLError(f"{failure}: rcl node's context is invalid")
         self.failure = failure
         domain: Domain = node.graph_node.participant.domain
-        domain.bury()
+        domain.close_pending()
         with domain.lock:
             self.nodes = list(domain.nodes)
             topics, services = list(domain.topics.values()), list(domain.services.values())
@@ -330,7 +330,7 @@ def _domain_of(node: Node, failure: str, name: str, argument: str) -> Domain:
     if error := rclpy_get_validation_error_for_full_topic_name(name):
         raise RCLError(f"{failure}: {argument} argument is invalid: {error[0]}")
     domain: Domain = node.graph_node.participant.domain
-    domain.bury()
+    domain.close_pending()
     return domain
 
 
