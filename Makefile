@@ -5,6 +5,9 @@ VENV := .venv
 # The wheels of ROS 2 that tests compare with: a group in pyproject.toml.
 REFERENCE := reference
 BIN := $(VENV)/bin
+# Further options of pytest, for each of its sessions: make test WITH="-x".
+WITH :=
+PYTEST := $(BIN)/pytest $(WITH)
 TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
 # Tests that the codec in C and the generated functions must pass alike: `make test` runs them with each, the longest first.
 # Tests that use rclpy in their own process: one session for each rclpy.
@@ -40,25 +43,25 @@ demo: $(VENV)/.run  ## see ifgen work on real interfaces, and a humanoid that wa
 	@echo "To play with the robot in the browser: $(BIN)/ifgen demo --web"
 
 test: $(VENV)/.test  ## run the tests (on Linux x86_64 against real ROS 2 as well)
-	$(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone"
-	IFGEN_CODEC=python $(BIN)/pytest -n auto --dist worksteal -m "not slow and not alone" $(BOTH_CODECS)
-	$(BIN)/pytest -n auto --dist worksteal --transport local -m "not slow and not alone" tests/rclpy/inside
-	$(BIN)/pytest -n auto --dist worksteal --transport local -m "not slow and not alone" $(INSIDE)
-	$(BIN)/pytest -n auto --transport both generated tests/libraries/inside/test_filters.py
+	$(PYTEST) -n auto --dist worksteal -m "not slow and not alone"
+	IFGEN_CODEC=python $(PYTEST) -n auto --dist worksteal -m "not slow and not alone" $(BOTH_CODECS)
+	$(PYTEST) -n auto --dist worksteal --transport local -m "not slow and not alone" tests/rclpy/inside
+	$(PYTEST) -n auto --dist worksteal --transport local -m "not slow and not alone" $(INSIDE)
+	$(PYTEST) -n auto --transport both generated tests/libraries/inside/test_filters.py
 
 test-slow: $(VENV)/.test  ## run the tests that take longer
-	$(BIN)/pytest -n auto --dist worksteal -m "slow and not alone"
-	$(BIN)/pytest -n auto --dist worksteal --transport local -m "slow and not alone" tests/rclpy/inside
-	$(BIN)/pytest -n auto --dist worksteal --transport local -m "slow and not alone" $(INSIDE)
-	IFGEN_CODEC=python IFGEN_CASES=400 $(BIN)/pytest -n auto --transport local $(addprefix tests/rclpy/inside/,\
+	$(PYTEST) -n auto --dist worksteal -m "slow and not alone"
+	$(PYTEST) -n auto --dist worksteal --transport local -m "slow and not alone" tests/rclpy/inside
+	$(PYTEST) -n auto --dist worksteal --transport local -m "slow and not alone" $(INSIDE)
+	IFGEN_CODEC=python IFGEN_CASES=400 $(PYTEST) -n auto --transport local $(addprefix tests/rclpy/inside/,\
 		mismatched_topics test_mismatch_services.py test_hostile_bytes.py)
-	$(BIN)/pytest -n auto --dist worksteal --transport both tests/libraries/inside
-	$(BIN)/pytest -m alone
+	$(PYTEST) -n auto --dist worksteal --transport both tests/libraries/inside
+	$(PYTEST) -m alone
 
 test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in its own environment
 	@$(MAKE) --no-print-directory VENV=$(VENV)-kilted REFERENCE=reference-kilted $(VENV)-kilted/.test
-	$(VENV)-kilted/bin/pytest -n auto -m "not alone" tests/native
-	$(VENV)-kilted/bin/pytest -n auto --transport rclpy generated
+	$(VENV)-kilted/bin/pytest $(WITH) -n auto -m "not alone" tests/native
+	$(VENV)-kilted/bin/pytest $(WITH) -n auto --transport rclpy generated
 
 interop: $(VENV)/.test  ## meet other implementations of rmw_zenoh's conventions and of DDS (INSTALL=1 first, about 1 GB)
 	$(BIN)/python -m tests.interop.bench $(if $(INSTALL),--install) $(OPTIONS)

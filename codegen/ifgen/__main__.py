@@ -8,9 +8,9 @@ import sys
 def main() -> int:
     """Run the command line of this process, and return its exit code."""
     try:
-        from ifgen.writing.interruption import held  # late: Ctrl-C may come already
+        from ifgen.signals import delay_interrupt  # late: Ctrl-C may come already
 
-        with held(""):
+        with delay_interrupt(""):
             from ifgen.cli.main import main as run  # late: one that Ctrl-C cuts short may fail in any way
     except KeyboardInterrupt:
         return _code_of_interruption()

@@ -77,9 +77,27 @@ class Field:
     maximum: int | None = None
 
     @property
+    def attribute(self) -> str:
+        """The name of the field in Python: `class_` for a field `class`."""
+        return self.slot[1:]
+
+    @property
+    def element(self) -> str:
+        """The name of the type of its value or elements: `double`, `string`, `geometry_msgs/msg/Point`."""
+        if isinstance(self.type, Text):
+            return "wstring" if self.type.wide else "string"
+        return self.type.name if isinstance(self.type, Basic) else type_name(self.type)
+
+    @property
     def is_collection(self) -> bool:
         """Whether it is an array or a sequence."""
         return self.is_sequence or self.size is not None
+
+
+def type_name(cls: type[Any]) -> str:
+    """`pkg/msg/Name` of a message, service or action class."""
+    package, folder, *_ = cls.__module__.split(".")
+    return f"{package}/{folder}/{cls.__name__}"
 
 
 _FIELD_TYPE = re.compile(

@@ -9,7 +9,7 @@ import hashlib
 import json
 from typing import Any, Final
 
-from ifgen_runtime.field_types import Basic, Field, Text, fields_of
+from ifgen_runtime.field_types import Basic, Field, Text, fields_of, type_name
 from ifgen_runtime.type_support.type_ids import Kind, TypeId
 
 _BASIC_IDS: Final = {
@@ -28,12 +28,6 @@ _BASIC_IDS: Final = {
     "octet": TypeId.BYTE,
 }
 _PLACEHOLDER = "structure_needs_at_least_one_member"
-
-
-def type_name(cls: type[Any]) -> str:
-    """`pkg/msg/Name` of a message, service or action class."""
-    package, folder, *_ = cls.__module__.split(".")
-    return f"{package}/{folder}/{cls.__name__}"
 
 
 def describe(cls: type[Any]) -> dict[str, Any]:

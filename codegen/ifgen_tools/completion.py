@@ -1,4 +1,4 @@
-"""What a shell gets at TAB: names of types, nodes, topics, services, actions and parameters.
+"""The words that a shell gets at TAB: names of types, nodes, topics, services, actions and parameters.
 
 A running system is asked for a short time. Whatever is wrong is no completion, and nothing is printed.
 Use it as `shell_complete=` at the argument that takes such a name.
@@ -71,7 +71,7 @@ def _looking(context: click.Context) -> Generator[Session]:
 
 def _visible(names: Iterable[str], typed: str) -> Iterator[str]:
     """Without hidden names, unless one is being typed."""
-    from ifgen_tools.names import is_hidden
+    from ifgen_tools.graph.reading import is_hidden
 
     return (name for name in names if is_hidden(typed) or not is_hidden(name))
 

@@ -1,4 +1,4 @@
-"""What the local transport knows of other processes, which rclpy's public API does not tell.
+"""The local transport's knowledge of other processes, which rclpy's public API does not tell.
 
 This is the one module of the tools that looks below rclpy.
 """
@@ -36,3 +36,31 @@ def survey(domain: int) -> Callable[[], Iterable[bytes]]:
     from rmw_local.statistics import survey
 
     return survey(Domain.numbered(domain), _PATIENCE)
+
+
+def queues(domain: int) -> dict[tuple[int, ...], tuple[str, int]]:
+    """The history and the depth of each end of a topic by gid, which rclpy's graph leaves out as DDS does."""
+    from rmw_local.domain import Domain
+    from rmw_local.qos import KEEP_ALL, KEEP_LAST
+
+    names = {KEEP_LAST: "KEEP_LAST", KEEP_ALL: "KEEP_ALL"}
+    here = Domain.numbered(domain)
+    here.bury()
+    with here.lock:
+        ends = [end for topic in here.topics.values() for end in (*topic.writers, *topic.readers)]
+        return {
+            tuple(end.gid): (names[end.qos.history], end.qos.depth)
+            for end in ends
+            if end.qos.history in names
+        }
+
+
+def service_hashes(domain: int) -> dict[tuple[int, ...], str]:
+    """The type hash of the whole service for each server and client by gid; other processes tell no other."""
+    from rmw_local.domain import Domain
+
+    here = Domain.numbered(domain)
+    here.bury()
+    with here.lock:
+        ends = [end for service in here.services.values() for end in (*service.servers, *service.clients)]
+        return {tuple(end.gid): end.service_type.type_hash for end in ends}

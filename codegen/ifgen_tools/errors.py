@@ -1,4 +1,4 @@
-"""What a command says to a user who made a mistake, or whose system is not as expected."""
+"""The errors of commands: for users who made a mistake, or whose system is not as expected."""
 
 from __future__ import annotations
 

@@ -16,29 +16,26 @@ class ToolCommand(click.Command):
     The exit code is then the number of the signal, as that of `ros2` is.
     """
 
+    ends_as_in_ros: Final = True
+    """What the command `ifgen` asks for if it is interrupted before this command, or after."""
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run it, and return its exit code."""
-        from ifgen_tools.interruption import hearing  # late: `--help` does without
+        from ifgen.signals import Terminated, signals_raise  # late: `--help` does without
 
-        with hearing() as heard:
+        with signals_raise() as interrupt:
             try:
                 return super().invoke(ctx) or 0
             except KeyboardInterrupt as stop:
-                raise click.exceptions.Exit(_SIGTERM if _is_termination(stop) else _SIGINT) from None
+                raise click.exceptions.Exit(_SIGTERM if isinstance(stop, Terminated) else _SIGINT) from None
             except click.exceptions.Exit:
                 raise
             except Exception as error:
                 # rclpy is not imported for its exception: a verb without nodes may never load it.
-                if heard.number or type(error).__name__ == "ExternalShutdownException":
-                    raise click.exceptions.Exit(heard.number or _SIGTERM) from None
+                if interrupt.number or type(error).__name__ == "ExternalShutdownException":
+                    raise click.exceptions.Exit(interrupt.number or _SIGTERM) from None
                 raise
 
 
 class ToolGroup(ToolCommand, click.Group):
     """A click group whose verbs end in this way."""
-
-
-def _is_termination(stop: KeyboardInterrupt) -> bool:
-    from ifgen.writing.interruption import Terminated  # only who is interrupted needs it
-
-    return isinstance(stop, Terminated)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from functools import wraps
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import click
 
-from ifgen_tools.names import full_name
+from ifgen_tools.graph.reading import full_name
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -31,45 +33,66 @@ _POLICIES: Final = {
 }
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QosChoice:
+    """The user's choice of QoS: a preset, and policies in place of its own. None leaves it open."""
+
+    profile: str | None = None
+    depth: int | None = None
+    history: str | None = None
+    reliability: str | None = None
+    durability: str | None = None
+    liveliness: str | None = None
+    liveliness_lease_duration_seconds: float | None = None
+
+    @property
+    def has_policies(self) -> bool:
+        """True if the user named more than a preset."""
+        return self != QosChoice(profile=self.profile)
+
+
 def qos_options(command: Command) -> Command:
-    """All `--qos-...`, as `qos_profile` and so on; pop them with `chosen_qos`."""
-    lease = click.option(
-        "--qos-liveliness-lease-duration-seconds",
-        type=click.FloatRange(min=0),
-        metavar="N",
-        help="The lease duration of liveliness.",
-    )
-    command = lease(command)
-    for policy, values in reversed(_POLICIES.items()):
+    """All `--qos-...`, as `qos`, which is a QosChoice."""
+
+    @wraps(command)
+    def run(**values: Any) -> Any:
+        chosen = {each.name: values.pop(f"qos_{each.name}") for each in fields(QosChoice)}
+        return command(qos=QosChoice(**chosen), **values)
+
+    options = [
+        click.option(
+            "--qos-profile",
+            type=click.Choice(_PRESETS),
+            metavar="NAME",
+            help=f"A profile: {', '.join(_PRESETS)}.",
+        ),
+        click.option(
+            "--qos-depth", type=click.IntRange(min=0), metavar="N", help="In place of the profile's."
+        ),
+    ]
+    for policy, values in _POLICIES.items():
         help = f"In place of the profile's: {', '.join(values)}."
-        command = click.option(f"--qos-{policy}", type=click.Choice(values), help=help, metavar="POLICY")(
-            command
+        kind = click.Choice(values)
+        options.append(click.option(f"--qos-{policy}", type=kind, help=help, metavar="POLICY"))
+    options.append(
+        click.option(
+            "--qos-liveliness-lease-duration-seconds",
+            type=click.FloatRange(min=0),
+            metavar="N",
+            help="The lease duration of liveliness.",
         )
-    depth = click.option(
-        "--qos-depth", type=click.IntRange(min=0), metavar="N", help="In place of the profile's."
     )
-    profile = click.option(
-        "--qos-profile",
-        type=click.Choice(_PRESETS),
-        metavar="NAME",
-        help=f"A profile: {', '.join(_PRESETS)}.",
-    )
-    return profile(depth(command))
+    for option in reversed(options):
+        option(run)  # which is changed in place
+    return run
 
 
-def chosen_qos(options: dict[str, Any]) -> dict[str, Any]:
-    """Take what the user chose of QoS out of the options of a command; empty if nothing."""
-    names = [name for name in options if name.startswith("qos_")]
-    taken = {name.removeprefix("qos_"): options.pop(name) for name in names}
-    return {name: value for name, value in taken.items() if value is not None}
-
-
-def profile_of(chosen: dict[str, Any], default: str) -> QoSProfile:
+def profile_of(chosen: QosChoice, default: str) -> QoSProfile:
     """The profile that the user chose; what was not said is as in the preset of the name `default`."""
     from rclpy import qos
     from rclpy.duration import Duration
 
-    profile = qos.QoSPresetProfiles.get_from_short_key(chosen.get("profile", default))
+    profile = qos.QoSPresetProfiles.get_from_short_key(chosen.profile or default)
     kinds: dict[str, Any] = {
         "history": qos.HistoryPolicy,
         "reliability": qos.ReliabilityPolicy,
@@ -77,13 +100,12 @@ def profile_of(chosen: dict[str, Any], default: str) -> QoSProfile:
         "liveliness": qos.LivelinessPolicy,
     }
     for policy, kind in kinds.items():
-        if policy in chosen:
-            setattr(profile, policy, kind.get_from_short_key(chosen[policy]))
-    if "liveliness_lease_duration_seconds" in chosen:
-        seconds: float = chosen["liveliness_lease_duration_seconds"]
+        if (word := getattr(chosen, policy)) is not None:
+            setattr(profile, policy, kind.get_from_short_key(word))
+    if (seconds := chosen.liveliness_lease_duration_seconds) is not None:
         profile.liveliness_lease_duration = Duration(nanoseconds=round(seconds * 1e9))
-    if "depth" in chosen:
-        profile.depth = chosen["depth"]
+    if chosen.depth is not None:
+        profile.depth = chosen.depth
     elif profile.durability == qos.DurabilityPolicy.TRANSIENT_LOCAL and profile.depth == 0:
         profile.depth = 1
     return profile
@@ -159,11 +181,11 @@ def obstacles(profile: QoSProfile, others: Sequence[TopicEndpointInfo], *, publi
 
 
 def _advice(offered: QoSProfile, requested: QoSProfile) -> str:
-    """What keeps them apart, by policy."""
+    """The sentences about what keeps them apart, by policy."""
     parts: list[str] = []
     for policy in ("reliability", "durability", "liveliness"):
         ours, theirs = getattr(offered, policy), getattr(requested, policy)
-        if _is_weaker(policy, ours.name, theirs.name):
+        if (ours.name, theirs.name) == _WEAKER[policy]:
             offer, request = f"{policy} {ours.short_key}", theirs.short_key
             parts.append(f"the publisher offers {offer}, the subscription asks for {request}")
     for policy in ("deadline", "liveliness_lease_duration"):
@@ -182,7 +204,3 @@ _WEAKER: Final = {
     "durability": ("VOLATILE", "TRANSIENT_LOCAL"),
     "liveliness": ("AUTOMATIC", "MANUAL_BY_TOPIC"),
 }
-
-
-def _is_weaker(policy: str, offered: str, requested: str) -> bool:
-    return (offered, requested) == _WEAKER[policy]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final, Literal
 
 from ifgen_tools import discovery
 from ifgen_tools.errors import Absent, ToolError
+from ifgen_tools.graph.reading import View, read
 from ifgen_tools.lookout import Lookout
 
 if TYPE_CHECKING:
@@ -90,18 +91,34 @@ class Session:
         elif self.transport == "local":
             self.wait_for(self._knows_everybody, _PATIENCE_LOCALLY, _LOOK)
         else:
-            self._wait_for_quiet(until or self._is_in_company)
+            self.settle(self._names, until or self._is_in_company)
         self.lookout.look_around()
 
-    def _wait_for_quiet(self, enough: Callable[[], bool]) -> None:
-        seen, started = self._graph(), time.monotonic()
+    def settle(
+        self,
+        look: Callable[[], object],
+        enough: Callable[[], bool],
+        *,
+        quiet: float = _QUIET,
+        patience: float = _PATIENCE,
+    ) -> None:
+        """Wait until `enough` holds, and what `look` returns has not changed for `quiet` [s].
+
+        Not longer than `patience` [s].
+        """
+        seen, started = look(), time.monotonic()
         since = started
-        while (now := time.monotonic()) - started < _PATIENCE:
-            if now - since > _QUIET and enough():
+        while (now := time.monotonic()) - started < patience:
+            if now - since > quiet and enough():
                 return
             self.turn(_LOOK)
-            if (found := self._graph()) != seen:
+            if (found := look()) != seen:
                 seen, since = found, time.monotonic()
+
+    def graph(self) -> View:
+        """The graph of the others, with all that the transport knows of it."""
+        is_local = self.transport == "local"
+        return read(self.node, discovery.queues(self.context.get_domain_id()) if is_local else {})
 
     def _is_in_company(self) -> bool:
         return len(self.node.get_node_names()) > 1
@@ -109,7 +126,7 @@ class Session:
     def _knows_everybody(self) -> bool:
         return discovery.knows_everybody(self.context.get_domain_id())
 
-    def _graph(self) -> tuple[object, ...]:
+    def _names(self) -> tuple[object, ...]:
         node = self.node
         return (
             node.get_node_names_and_namespaces(),
@@ -136,9 +153,9 @@ def open_session(
     chosen = activate(transport)
     if chosen == "rclpy":
         _hush_half_made_tasks()
-    from ifgen.writing.interruption import held
+    from ifgen.signals import delay_interrupt
 
-    with held(""):  # Ctrl-C in the import of a module in C may be lost
+    with delay_interrupt(""):  # Ctrl-C in the import of a module in C may be lost
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
         from rclpy.parameter import Parameter

@@ -38,7 +38,7 @@ class Layout(BuildHookInterface):  # type: ignore[type-arg]  # hatchling's own d
 
 
 def _of_message_packages(generated: Path) -> Iterator[Path]:
-    """What is in each package of messages, without its tests; those of nodes go with the demo."""
+    """The files in each package of messages, without its tests; those of nodes go with the demo."""
     for package in sorted(generated.glob("[!.]*")):
         if package.is_dir() and not (package / _ONLY_PACKAGES_OF_NODES_HAVE).exists():
             yield from (entry for entry in sorted(package.iterdir()) if entry.name != _TESTS)

@@ -182,7 +182,7 @@ def variants() -> Iterator[dict[str, Any]]:
     yield {"use_statistics": False}
 
 
-@pytest.mark.parametrize("options", variants(), ids=str)
+@pytest.mark.parametrize("options", [*variants()], ids=str)
 def test_files_of_the_library(tmp_path: Path, options: dict[str, Any]) -> None:
     path = tmp_path / "a.mcap"
     by_the_library(path, **options)

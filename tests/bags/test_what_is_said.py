@@ -133,8 +133,7 @@ def test_summaries(tmp_path: Path, sound: bytes) -> None:
 
     def said(data: bytes) -> str:
         found = said_of(path, data)
-        with warnings.catch_warnings(), Bag(path) as bag:
-            warnings.simplefilter("ignore")
+        with warnings.catch_warnings(action="ignore"), Bag(path) as bag:
             assert [message.data for message in bag["/log"]] == ["message 0", "message 1"]
         return found[0].partition(": ")[2].removesuffix("; 2 messages are before it")
 

@@ -45,7 +45,7 @@ def with_each_file() -> Iterator[Any]:
             yield pytest.param(file, make, id=f"{file}-{make.__name__}", marks=slow)
 
 
-@pytest.mark.parametrize(("file", "make"), with_each_file())
+@pytest.mark.parametrize(("file", "make"), [*with_each_file()])
 def test_what_is_no_file_of_a_sensible_size_is_not_read(
     ifgen: Run, demo_msgs: Path, file: str, make: Callable[[Path], None]
 ) -> None:

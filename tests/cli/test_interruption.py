@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from ifgen.pipeline import rendering
+from ifgen.pipeline import planning
 
 from .conftest import Outcome, Run, write
 
@@ -42,8 +42,8 @@ def test_before_anything_is_written(
     ifgen("generate", "demo_msgs")
     before = contents(Path("generated"))
     write(demo_msgs / "msg/Pose.msg", "float64 y\n")
-    render = first(rendering.render, lambda: signal.raise_signal(number))
-    monkeypatch.setattr(rendering, "render", render)
+    render = first(planning.render, lambda: signal.raise_signal(number))
+    monkeypatch.setattr(planning, "render", render)
     assert ifgen("generate", "demo_msgs") == Outcome(code, "", f"{word}: no file was changed\n")
     assert contents(Path("generated")) == before
 

@@ -15,7 +15,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Registry
-from ifgen.generator_py.codec import CodecText, Extents, extent, plan, render
+from ifgen.generator_py.codec import plan as planning
+from ifgen.generator_py.codec.plan import Extents, plan
+from ifgen.generator_py.codec.python.text import CodecText, render
 
 from .strategies import messages
 from .support import OWN_INTERFACES, Classes, generate
@@ -58,7 +60,7 @@ def size(codec: CodecText) -> int:
 def cut(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Classes:
     """The classes of codec_msgs and their dependencies, as if most of them were large."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(extent, *request.param)
+        patch.setattr(planning, *request.param)
         return generate(tmp_path_factory.mktemp("cut"), OWN_INTERFACES)
 
 
@@ -82,7 +84,7 @@ def test_classes_without_functions_for_parts(without_parts: Classes, data: st.Da
 def without_parts(tmp_path_factory: pytest.TempPathFactory) -> Classes:
     """The classes of codec_msgs without the functions that write or read them as a part."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(extent, "MOST_STEPS", 2)
+        patch.setattr(planning, "MOST_STEPS", 2)
         patch.setattr(ifgen_runtime.codec, "attach_parts", lambda *_: None)
         return generate(tmp_path_factory.mktemp("without"), OWN_INTERFACES)
 
@@ -165,9 +167,9 @@ def test_no_function_is_long(tmp_path: Path) -> None:
     codec = planned(registry, "Many")
     for text in (codec.serialize, codec.deserialize):
         functions = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)]
-        assert len(functions) > 1000 / extent.MOST_STEPS
+        assert len(functions) > 1000 / planning.MOST_STEPS
         lengths = [sum(isinstance(node, ast.stmt) for node in ast.walk(function)) for function in functions]
-        assert max(lengths) < 5 * extent.MOST_STEPS
+        assert max(lengths) < 5 * planning.MOST_STEPS
 
 
 @pytest.mark.parametrize("count", [700, pytest.param(20_000, marks=pytest.mark.slow)])

@@ -9,7 +9,8 @@ import ifgen
 import pytest
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec import Extents, plan, render
+from ifgen.generator_py.codec.plan import Extents, plan
+from ifgen.generator_py.codec.python.text import render
 from ifgen.generator_py.names import class_reference
 from ifgen_runtime import codec as runtime
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import ifgen
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec import Extents, plan
-from ifgen.generator_py.codec.alignment import Alignment
+from ifgen.generator_py.codec.plan import Extents, plan
 from ifgen.generator_py.codec.positions import (
+    Alignment,
     Positions,
     Tile,
     entry_alignment,

@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import pytest
 from ifgen.generator_py.codec.python.body import Body, Constants
-from ifgen.generator_py.codec.python.code import POSITION, Positioned, product
-from ifgen.generator_py.codec.python.lines import wrapped
 from ifgen.generator_py.codec.python.pieces import HEADER, Piece, run_format
-from ifgen.generator_py.codec.python.statements import Do, For, Move, Place, without_idle_moves
+from ifgen.generator_py.codec.python.statements import (
+    POSITION,
+    Do,
+    For,
+    Move,
+    Place,
+    Positioned,
+    product,
+    without_idle_moves,
+    wrapped,
+)
 
 
 def lines(body: Body) -> list[str]:

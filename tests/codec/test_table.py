@@ -9,7 +9,7 @@ from typing import Any
 
 import ifgen
 import pytest
-from ifgen.generator_py.codec import Extents, plan
+from ifgen.generator_py.codec.plan import Extents, plan
 from ifgen.generator_py.codec.table import table_of
 from ifgen_runtime.codec.choice import chosen
 

@@ -11,7 +11,7 @@ import pytest
 DRAW = """
 import hashlib, sys
 if {busy}:
-    import ifgen.cli.main, ifgen.cli.doctor, ifgen.generator_py.tests.contract
+    import ifgen.cli.main, ifgen.cli.rules, ifgen.generator_py.tests.contract
 from tests import conftest
 from tests.nodes import descriptions
 from tests.generated_tests import definitions

@@ -19,6 +19,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
+from ifgen.definition.names import attribute_name
 from ifgen.definition.omg_idl import python_names
 from ifgen.definition.problems import FileProblems
 from ifgen.definition.types import (
@@ -34,7 +35,6 @@ from ifgen.diagnostics import Source, Span
 from ifgen.generator_py.imports import IN_MESSAGES
 from ifgen.generator_py.messages import docstrings
 from ifgen.generator_py.messages.package import plan
-from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.templates.render import Templates
 from ifgen.generator_py.tests.package import plan_interface_tests
 

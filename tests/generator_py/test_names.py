@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from ifgen.definition.interfaces import Field
+from ifgen.definition.names import attribute_name, default_name
 from ifgen.definition.types import BasicType, NamespacedType
 from ifgen.generator_py import names
 
@@ -61,8 +62,4 @@ def test_classes_of_other_modules_have_their_package_in_their_name() -> None:
 )
 def test_fields(field: str, attribute: str, slot: str, default: str) -> None:
     of = Field(field, BasicType("int32"))
-    assert (names.attribute_name(of), names.slot_name(of), names.default_name(of)) == (
-        attribute,
-        slot,
-        default,
-    )
+    assert (attribute_name(of), names.slot_name(of), default_name(of)) == (attribute, slot, default)

@@ -263,9 +263,10 @@ def test_a_second_robot_in_the_same_domain_is_refused(tmp_path: Path) -> None:
                 second = subprocess.run(
                     command, capture_output=True, text=True, timeout=60, env=environment, check=False
                 )
-            finally:
                 first.send_signal(signal.SIGINT)
-            assert first.wait(30) == 130
+                assert first.wait(30) == 130
+            finally:
+                first.kill()
         # Nothing that the second one published has reached the first.
         assert "refused" not in heard.read_text()
     assert second.returncode == 1

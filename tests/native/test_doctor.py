@@ -9,10 +9,10 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-from ifgen.cli import doctor
 from ifgen_pytest.domains import own_domain
 from ifgen_runtime.codec import choice
 from ifgen_runtime.installation import add_extra, add_native
+from ifgen_tools.doctor import machine
 
 from tests.running.terminals import Terminal
 
@@ -84,18 +84,18 @@ def test_a_sourced_distribution_that_is_not_the_installed_one() -> None:
 def test_how_a_distribution_is_known(
     home: str, environment: dict[str, str], expected: tuple[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(doctor, "_version", lambda name: None)
+    monkeypatch.setattr(machine, "_version", lambda name: None)
     monkeypatch.delenv("ROS_DISTRO", raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
-    assert doctor._distribution(home) == expected
+    assert machine._distribution(home) == expected
 
 
 def test_a_distribution_that_nobody_has_tested(monkeypatch: pytest.MonkeyPatch) -> None:
     home = "/opt/ros/lyrical/lib/python3.14/site-packages/rclpy/__init__.py"
-    monkeypatch.setattr(doctor.importlib.util, "find_spec", lambda name: object())
-    monkeypatch.setattr(doctor, "_ask_real", lambda: [home, "rmw_fastrtps_cpp", "ok native 1"])
-    last = list(doctor._real_rclpy("Linux x86_64"))[-1]
+    monkeypatch.setattr(machine.importlib.util, "find_spec", lambda name: object())
+    monkeypatch.setattr(machine, "_ask_real", lambda: [home, "rmw_fastrtps_cpp", "ok native 1"])
+    last = list(machine._real_rclpy("Linux x86_64"))[-1]
     assert last.found == (
         "native 1: never-compiled packages work; symbols and layouts fit, but its tests were never run on lyrical"
     )
@@ -117,9 +117,9 @@ def test_no_codec_in_c(
     """An extension that is there and does not fit is not mended by installing it."""
     python = choice.CodecChoice(None, "ifgen_native is not installed")
     monkeypatch.setattr(choice, "chosen", lambda: python)
-    monkeypatch.setattr(doctor, "_version", lambda name: number)
-    monkeypatch.setattr(doctor.platform, "system", lambda: system)
-    found = doctor._codec()
+    monkeypatch.setattr(machine, "_version", lambda name: number)
+    monkeypatch.setattr(machine.platform, "system", lambda: system)
+    found = machine._codec()
     assert found.found == "in Python (slower): ifgen_native is not installed"
     assert found.advice == (add_native() if is_advised else None)
     assert len(f"{found.subject + ':':17}{found.found}") < 80
@@ -154,9 +154,9 @@ def test_a_broken_rclpy(text: str, reason: str, tmp_path: Path) -> None:
 
 
 def test_no_rclpy(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doctor.importlib.util, "find_spec", lambda name: None)
-    monkeypatch.setattr(doctor.platform, "machine", lambda: "x86_64")
-    *_, last = doctor.examine()
+    monkeypatch.setattr(machine.importlib.util, "find_spec", lambda name: None)
+    monkeypatch.setattr(machine.platform, "machine", lambda: "x86_64")
+    *_, last = machine.examine()
     assert (last.subject, last.found) == ("real rclpy", "not found")
     assert (add_extra("ros") in (last.advice or "")) == (sys.platform == "linux")
 
@@ -184,7 +184,7 @@ def test_who_is_reached_and_why_not(
     pytest.importorskip("zenoh")
     for name, value in ({"ROS_DOMAIN_ID": "97"} | environment).items():
         monkeypatch.setenv(name, value)
-    found = doctor._other_processes()
+    found = machine._other_processes()
     said = f"{found.found} -> {found.advice}".replace(version("eclipse-zenoh"), "1.10.2")
     assert words in said
 

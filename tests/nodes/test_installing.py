@@ -7,6 +7,7 @@ import runpy
 import shutil
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -14,7 +15,7 @@ from typing import Any
 import pytest
 
 ROOT = Path(__file__).parents[2]
-COLCON = shutil.which("colcon")
+COLCON = shutil.which("colcon", path=os.pathsep.join((sysconfig.get_path("scripts"), *os.get_exec_path())))
 INSTALLED = {
     "share/ament_index/resource_index/packages/robot",
     *(f"share/ament_index/resource_index/nodl/robot__{node}" for node in ("arm", "brain", "gripper")),
@@ -54,7 +55,7 @@ def test_setuptools_installs_it_as_colcon_does(robot: Path, tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(COLCON is None, reason="colcon is not on PATH")
+@pytest.mark.skipif(COLCON is None, reason="colcon is not installed")
 def test_colcon_builds_it(robot: Path, tmp_path: Path) -> None:
     shutil.copytree(robot / "generated/robot", tmp_path / "src/robot")
     done = subprocess.run(

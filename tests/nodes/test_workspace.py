@@ -7,6 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
+import sysconfig
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,7 +15,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/colcon.md"
-COLCON = shutil.which("colcon")
+COLCON = shutil.which("colcon", path=os.pathsep.join((sysconfig.get_path("scripts"), *os.get_exec_path())))
 
 pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="no checkout")
 
@@ -72,7 +73,7 @@ def test_colcon_builds_messages_first(workspace: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(COLCON is None, reason="colcon is not on PATH")
+@pytest.mark.skipif(COLCON is None, reason="colcon is not installed")
 def test_colcon_finds_each_package_once(workspace: Path) -> None:
     assert run(str(COLCON), "list", cwd=workspace).split() == [
         *("robot", "generated/robot", "(ros.ament_python)"),

@@ -15,8 +15,8 @@ import pytest
 import yaml
 from ifgen.generator_py.nodes.documents import config_lines, description_lines
 from ifgen.nodl.model import NodeDescription, Parameter, ParameterType
-from ifgen.observing.node_document import as_yaml, document_of
-from ifgen.observing.node_observation import Seen, SeenParameter
+from ifgen_tools.nodl.document import as_yaml, document_of
+from ifgen_tools.nodl.parameters import RunningParameter
 
 from .conftest import load_from
 
@@ -96,10 +96,12 @@ def test_a_description(reader: Callable[[str], Any]) -> None:
 @pytest.mark.parametrize("reader", READERS)
 def test_what_is_described_of_a_running_node(reader: Callable[[str], Any]) -> None:
     seen = [
-        SeenParameter(name, "string" if isinstance(value, str) else "string_array", value, value[0], *NO_MORE)
+        RunningParameter(
+            name, "string" if isinstance(value, str) else "string_array", value, value[0], *NO_MORE
+        )
         for name, value in VALUES.items()
     ]
-    document, omitted = document_of(Seen(("/talker",), (), tuple(seen)), "/talker")
+    document, omitted = document_of("/talker", (), seen)
     assert not omitted
     read = reader(as_yaml(document, ["parameter '\x81\ufffe\u2028\x85'"]))["parameters"]
     assert {name: said["default_value"] for name, said in read.items()} == VALUES

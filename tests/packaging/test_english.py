@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-_CODE = ("ifgen", "ifgen_pytest", "ifgen_runtime", "underlay", "libraries", "packaging")
 _EMPTY = re.compile(r"(What|Who|Whose|Whom)\b|See `?[\w.]+`?\.?$")
 _TICS = re.compile(
     r"\b(so many(?! \w+ that)|anew|what there is|takes? no part|be it|no such a|is called as|passed over|to be had)\b"
@@ -33,8 +32,7 @@ def test_texts_use_the_usual_words() -> None:
 
 
 def _modules() -> Iterator[Path]:
-    for folder in _CODE:
-        yield from sorted((ROOT / "codegen" / folder).rglob("*.py"))
+    yield from sorted((ROOT / "codegen").rglob("*.py"))
 
 
 def _docstrings() -> Iterator[tuple[str, str]]:

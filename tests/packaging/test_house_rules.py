@@ -14,15 +14,9 @@ ROOT: Final = Path(__file__).resolve().parents[2]
 TOOLKIT: Final = ROOT / "codegen/ifgen"
 
 WRITERS: Final = {
-    "cli/graph.py": "the drawing, to the file that was named",
     "cli/new.py": "files that do not exist yet",
-    "cli/nodl.py": "the description, to the file that was named",
     "cli/terminal.py": "the null device, in place of an output that is closed",
     "generator_py/templates/exports.py": "the folder that `transaction` fills",
-    "observing/definitions_observation.py": "what was seen, for the process that asked",
-    "observing/graph_observation.py": "what was seen, for the process that asked",
-    "observing/node_observation.py": "what was seen, for the process that asked",
-    "observing/observed.py": "a folder of its own, for an observer to report to",
     "running/processes.py": "a folder of its own, for notes between processes",
 }
 """Who writes besides the room `writing`, and what; by file below codegen/ifgen."""

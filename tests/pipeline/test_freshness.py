@@ -9,8 +9,8 @@ from typing import Any
 import ifgen
 import pytest
 from ifgen.diagnostics import InputError
-from ifgen.pipeline import rendering, stages
-from ifgen.pipeline.freshness import fingerprints
+from ifgen.pipeline import planning, stages
+from ifgen.pipeline.cache import fingerprints
 from ifgen.writing.write import OutputPackage
 
 
@@ -33,14 +33,14 @@ def cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 def rendered(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The packages that were rendered since it was last cleared."""
     names: list[str] = []
-    original = rendering.render
+    original = planning.render
 
     def spy(*arguments: Any) -> Iterator[OutputPackage]:
         for package in original(*arguments):
             names.append(package.name)
             yield package
 
-    monkeypatch.setattr(rendering, "render", spy)
+    monkeypatch.setattr(planning, "render", spy)
     return names
 
 
@@ -138,14 +138,14 @@ def test_a_file_saved_while_generating_is_not_missed(
     rendered: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "ws/alone_msgs/msg/Alone.msg"
-    original = rendering.render
+    original = planning.render
 
-    def render_slowly(*arguments: Any) -> tuple[OutputPackage, ...]:
+    def render_slowly(*arguments: Any) -> Iterator[OutputPackage]:
         path.write_text("int64 saved_meanwhile\n")
         return original(*arguments)
 
     with monkeypatch.context() as patched:
-        patched.setattr(rendering, "render", render_slowly)
+        patched.setattr(planning, "render", render_slowly)
         generate()
     rendered.clear()
     generate()

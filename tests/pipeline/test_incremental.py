@@ -19,7 +19,7 @@ from ifgen.config.customization import Customization, Distributions, Output
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.templates.render import Templates
 from ifgen.pipeline import resolution
-from ifgen.pipeline.job import Job
+from ifgen.pipeline.values import ResolvedInput
 from ifgen.writing.write import EDITED
 
 WORKSPACE = {
@@ -84,7 +84,7 @@ def resolved(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     runs: list[str] = []
     original = resolution.resolve
 
-    def spy(*arguments: object) -> Job:
+    def spy(*arguments: object) -> ResolvedInput:
         runs.append("read")
         return original(*arguments)  # type: ignore[arg-type]
 
@@ -293,7 +293,7 @@ def test_another_ifgen_has_generated_there_since(monkeypatch: pytest.MonkeyPatch
 
 def test_every_file_of_the_toolkit_counts() -> None:
     from ifgen import resources
-    from ifgen.pipeline.freshness import fingerprints
+    from ifgen.pipeline.cache import fingerprints
 
     templates = resources.templates()
     before = fingerprints.of_generator(templates)
@@ -411,15 +411,15 @@ def test_what_warnings_come_of_counts(resolved: list[str], workspace: Path, chan
 
 def test_a_module_saved_while_it_is_compared(monkeypatch: pytest.MonkeyPatch) -> None:
     ifgen.generate("ws", output="out")
-    original = Job.warnings
+    original = ResolvedInput.diagnostics
 
-    def save_meanwhile(job: Job) -> object:
-        found = original(job)
+    def save_meanwhile(resolved: ResolvedInput) -> object:
+        found = original(resolved)
         Path("out/robot/robot/arm.py").write_text("no Python")
         return found
 
     with monkeypatch.context() as patched:
-        patched.setattr(Job, "warnings", save_meanwhile)
+        patched.setattr(ResolvedInput, "diagnostics", save_meanwhile)
         Path("ws/top_msgs/msg/Alone.msg").write_text("int64 n\n")
         assert not ifgen.generate("ws", output="out").diagnostics
     assert [found.rule for found in ifgen.generate("ws", output="out").diagnostics] == ["user-module"]

@@ -312,14 +312,14 @@ def test_without_unix_sockets_they_meet_at_a_router(zenoh: bool, monkeypatch: py
         monkeypatch.delenv(name, raising=False)
     if not zenoh:
         monkeypatch.setitem(sys.modules, "zenoh", None)
-    with processes._meeting_place("local") as place:
+    with processes.meeting_place("local") as place:
         if not zenoh:
             assert place == {}
             return
         host, _, port = place["ROS_STATIC_PEERS"].removeprefix("tcp/").partition(":")
         with socket.create_connection((host, int(port)), timeout=LIMIT):
             pass
-    with processes._meeting_place("rclpy") as place:
+    with processes.meeting_place("rclpy") as place:
         assert place == {}
 
 

@@ -8,7 +8,7 @@ import sys
 import click
 import pytest
 from ifgen.cli import further
-from ifgen.writing.interruption import Terminated
+from ifgen.signals import Terminated
 from ifgen_tools.errors import ToolError
 from ifgen_tools.group import ToolGroup
 

@@ -362,10 +362,10 @@ def test_what_is_the_users_stays_when_nothing_needs_it(gone: OutputPackage, out:
     out.mkdir()
     node = out / "demo/node.py"
     write.write([OutputPackage("demo", {"base.py": "base"}, once={"node.py": "first"})], out, GENERATOR)
-    assert write.left_behind([gone], out) == (node,)
+    assert write.left_behind(gone, out) == [node]
     write.write([gone], out, GENERATOR)
     assert node.read_text() == "first"
-    assert write.left_behind([gone], out) == (), "told once"
+    assert write.left_behind(gone, out) == [], "told once"
 
 
 def test_a_generated_file_that_becomes_the_users_stays_as_it_is(out: Path) -> None:

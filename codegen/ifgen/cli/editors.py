@@ -16,7 +16,7 @@ from ifgen.cli.arguments import OUTPUT_FOLDER
 from ifgen.cli.arguments import quiet as quiet_option
 from ifgen.config.settings import Settings, settle
 from ifgen.diagnostics import shown_path
-from ifgen.writing.interruption import terminable
+from ifgen.signals import sigterm_raises
 
 # Late imports: each command loads what it needs, so that the others start fast.
 
@@ -76,7 +76,7 @@ def typings(directory: Path, check: bool, quiet: bool) -> int:
             print(f"{shown_path(directory)} is not up to date: run `{advice}`", file=sys.stderr)
             return 1
     else:
-        with terminable():
+        with sigterm_raises():
             done = stubs.write_typings(directory, output)
         if done.written or done.removed:
             found = f"{terminal.counted(len(done.written), 'file')} written, {len(done.removed)} removed"

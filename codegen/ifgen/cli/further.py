@@ -20,9 +20,9 @@ def names() -> list[str]:
 
 
 def ends_as_tools_do(words: Sequence[str]) -> bool:
-    """Whether a command line is one of ifgen_tools, whose exit code after Ctrl-C is 2, as that of `ros2`."""
-    entry_point = _entry_points().get(words[0]) if words else None
-    return entry_point is not None and entry_point.value.startswith("ifgen_tools.")
+    """Whether a command line is one that `ros2` has, too, and that ends as there: with 2 after Ctrl-C."""
+    found = command(words[0]) if words else None
+    return getattr(found, "ends_as_in_ros", False)
 
 
 def command(name: str) -> click.Command | None:

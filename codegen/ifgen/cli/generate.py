@@ -22,7 +22,7 @@ from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import with_deps as with_deps_option
 from ifgen.config.settings import Settings, settle
 from ifgen.diagnostics import Diagnostic, any_errors, shown_path
-from ifgen.writing.interruption import terminable
+from ifgen.signals import sigterm_raises
 
 if TYPE_CHECKING:
     from ifgen.pipeline.stages import Generated
@@ -96,7 +96,7 @@ def generate(
         raise click.UsageError(f"{option} cannot be used with --watch", click.get_current_context())
     if exit_non_zero_on_change and not check:
         run = partial(run, changes_fail=True)
-    with terminable():
+    with sigterm_raises():
         if not watch:
             with without_garbage_collection():
                 return run(settings())

@@ -27,7 +27,7 @@ from ifgen.cli.arguments import strict as strict_option
 from ifgen.cli.arguments import transport as transport_option
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError, printable, shown_path
-from ifgen.writing.interruption import Terminated, held, terminable
+from ifgen.signals import Terminated, delay_interrupt, sigterm_raises
 
 if TYPE_CHECKING:
     from ifgen.pipeline.inspection import Findings
@@ -119,13 +119,10 @@ class _Commands(click.Group):
             "completion",
             "demo",
             "diff",
-            "doctor",
             "generate",
-            "graph",
             "init",
             "lock",
             "new",
-            "nodl",
             "paths",
         ),
         *("router", "rules", "templates", "test", "typings"),
@@ -227,7 +224,7 @@ def _fix(told: Sequence[Diagnostic]) -> bool:
     texts = fixed(told)
     if texts:
         top = Path(os.path.commonpath([path.absolute().parent for path in texts]))
-        with terminable():
+        with sigterm_raises():
             transaction.apply([(path.absolute(), after.encode()) for path, (_, after) in texts.items()], top)
         for path in texts:
             print(f"fixed {shown_path(path)}", file=sys.stderr)
@@ -327,7 +324,7 @@ def run(
     PACKAGE is a generated one, sources in this folder or in src, or one that is installed. A FILE of that
     name comes first.
     """
-    with held(""):
+    with delay_interrupt(""):
         from ifgen.running import run as running
 
         is_part = of_launch or running.is_one_of_several()
@@ -338,11 +335,11 @@ def run(
     if generate_first:
         from ifgen.cli import generate
 
-        with terminable(), redirect_stdout(sys.stderr), generate.without_garbage_collection():
+        with sigterm_raises(), redirect_stdout(sys.stderr), generate.without_garbage_collection():
             # stdout is the programs'
             generate.write(settings.with_paths().trusted())
         invalidate_caches()  # Python may have looked into the folders already
-    with held(""):
+    with delay_interrupt(""):
         programs = running.split(program if is_part else words, settings.output)
     return running.run(programs, transport, settings.output, in_lockstep=in_lockstep, tells=not is_part)
 

@@ -16,7 +16,7 @@ from ifgen.cli.arguments import format_ as format_option
 from ifgen.cli.arguments import include as include_option
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError, shown_path
-from ifgen.writing.interruption import terminable
+from ifgen.signals import sigterm_raises
 
 if TYPE_CHECKING:
     from ifgen.generator_py.templates.contexts import Contexts
@@ -69,7 +69,7 @@ def export(name: str, folder: Path | None, extend: bool) -> int:
     ours = {template.name: template.blocks for template in listed(Customization())}
     chosen = exports.choose((name,), ours)
     folder = folder or _own_folder()
-    with terminable():
+    with sigterm_raises():
         written = exports.export(chosen, folder, ours if extend else None)
     for path in written:
         print(f"exported {shown_path(path)}")
@@ -97,7 +97,7 @@ def diff(folder: Path | None, merge: bool) -> int:
     folder = folder or _own_folder()
     compared = exports.compare(folder)
     if merge:
-        with terminable():
+        with sigterm_raises():
             written = exports.accept(compared, folder)
         compared = exports.compare(folder)
         conflicts = {comparison.path for comparison in compared if comparison.unresolved}

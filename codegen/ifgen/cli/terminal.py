@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from ifgen.cli import failures, report
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, any_errors, shown_path
-from ifgen.writing.interruption import INTERRUPTED, TERMINATED, Terminated
+from ifgen.signals import INTERRUPTED, TERMINATED, Terminated
 
 if TYPE_CHECKING:
     from rich.console import Console

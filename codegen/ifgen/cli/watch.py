@@ -15,7 +15,7 @@ from ifgen.config.settings import Settings
 from ifgen.diagnostics import shown_path
 from ifgen.reading.listed_file import EXTENSIONS
 from ifgen.reading.packages import NODE_EXTENSIONS
-from ifgen.writing.interruption import INTERRUPTED, TERMINATED
+from ifgen.signals import INTERRUPTED, TERMINATED
 
 _INPUTS = (*EXTENSIONS, ".cmake", *NODE_EXTENSIONS)
 _NAMES = {"package.xml", "pyproject.toml", "CMakeLists.txt"}

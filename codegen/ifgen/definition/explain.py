@@ -9,7 +9,7 @@ from typing import Final
 
 from ifgen.definition import rules
 from ifgen.definition.escapes import BadValue
-from ifgen.definition.names import is_constant_name, is_field_name, module_name
+from ifgen.definition.names import is_constant_name, is_field_name, snake_case
 from ifgen.definition.spelling import PRIMITIVES, BadType
 from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
 
@@ -86,7 +86,7 @@ def invalid_field_name(name: str, span: Span) -> Diagnostic:
     """Say why a field cannot have this name."""
     shown = shorten(name)
     array = re.fullmatch(r"(\w+)(\[.*\])", shown)
-    snake = _joined(module_name(shown))
+    snake = _joined(snake_case(shown))
     if array:
         help = f"the brackets belong to the type: `TYPE{array[2]} {array[1]}`"
     elif name.startswith("[") and name.endswith("]"):
@@ -103,7 +103,7 @@ def invalid_field_name(name: str, span: Span) -> Diagnostic:
 def invalid_constant_name(name: str, span: Span) -> Diagnostic:
     """Say why a constant cannot have this name."""
     shown = shorten(name)
-    upper = _joined(shown if shown.isupper() else module_name(shown)).upper()
+    upper = _joined(shown if shown.isupper() else snake_case(shown)).upper()
     if set(name) <= set("<>"):
         help = "write bounds without spaces: `string<=10 name`"
     elif name.startswith("["):

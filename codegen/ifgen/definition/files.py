@@ -83,7 +83,7 @@ def two_forms(file: InterfaceFile, source: Source) -> Diagnostic | None:
 
 def same_module(type_name: str, other: str, source: Source, first: Source | None) -> Diagnostic:
     """Say that two interfaces would be written to the same Python module."""
-    module = names.module_name(type_name.rpartition("/")[2])
+    module = names.snake_case(type_name.rpartition("/")[2])
     return Diagnostic(
         "same-module",
         f"{type_name} and {other} would both be the Python module _{module}",

@@ -5,7 +5,10 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 from keyword import iskeyword
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from ifgen.definition.interfaces import Field
 
 PLACEHOLDER: Final = "structure_needs_at_least_one_member"
 """The field that IDL, type hash and wire have in place of no fields at all."""
@@ -66,16 +69,17 @@ def is_keyword(name: str) -> bool:
     return iskeyword(name)
 
 
-def attribute_name(field: str) -> str:
-    """The attribute of a field in Python: `from_` for `from`, since Python keeps that word."""
-    return f"{field}_" if iskeyword(field) or field in _RESERVED_ATTRIBUTES else field
+def attribute_name(field: Field) -> str:
+    """The public attribute and keyword of a field in Python: `from_` for `from`, which Python keeps."""
+    name = field.name
+    return f"{name}_" if iskeyword(name) or name in _RESERVED_ATTRIBUTES else name
 
 
-def default_name(field: str) -> str:
+def default_name(field: Field) -> str:
     """The class attribute that holds the default value of a field: `X__DEFAULT`."""
-    return f"{field.upper()}__DEFAULT"
+    return f"{field.name.upper()}__DEFAULT"
 
 
-def module_name(name: str) -> str:
+def snake_case(name: str) -> str:
     """The snake case in which rosidl names a type's module and file: `PointCloud2` becomes `point_cloud2`."""
     return _CASE_CHANGE.sub(r"\1_\2", _WORD_START.sub(r"\1_\2", name)).lower()

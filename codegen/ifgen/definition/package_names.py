@@ -89,7 +89,7 @@ def _device(name: str) -> Diagnostic | None:
 def problem(name: str) -> Diagnostic | None:
     """The mistake in a name for a package, wherever the package is."""
     if not names.is_package_name(name):
-        snake = re.sub(r"[^a-z0-9]+", "_", names.module_name(name)).strip("_")
+        snake = re.sub(r"[^a-z0-9]+", "_", names.snake_case(name)).strip("_")
         advice = "Package names are lower-case letters, digits and single underscores, a letter first"
         hint = f"did you mean '{snake}'? " if names.is_package_name(snake) and snake != name else ""
         message = f"'{name}' is not a valid package name"

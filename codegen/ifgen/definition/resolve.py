@@ -240,7 +240,7 @@ class _Resolver:
             if first is not None:
                 problems.error(files.duplicate_type, part.type_name, source, first.source)
                 return
-        module = (interface.package, interface.folder, names.module_name(interface.name))
+        module = (interface.package, interface.folder, names.snake_case(interface.name))
         other = self._modules.setdefault(module, interface)
         if other is not interface:
             problems.error(files.same_module, interface.type_name, other.type_name, source, other.source)

@@ -13,8 +13,9 @@ from threading import RLock
 from typing import Any, Final
 
 from ifgen.definition.interfaces import Message
-from ifgen.generator_py.codec import CodecText, plan, render
-from ifgen.generator_py.messages.facts import Facts
+from ifgen.generator_py.codec.plan import plan
+from ifgen.generator_py.codec.python.text import CodecText, render
+from ifgen.generator_py.messages.classes import Facts
 from ifgen.generator_py.names import class_reference
 
 _RUNTIME: Final = "ifgen_runtime.codec"

@@ -8,104 +8,69 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import lru_cache
 from sys import stdlib_module_names
-from typing import Final, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 Import: TypeAlias = tuple[str, str, str]
 """Module (none for a module itself), name, and what it is called here."""
 
-IN_MESSAGES: Final = {
-    "Exception": "builtins",
-    "bool": "builtins",
-    "bytes": "builtins",
-    "dict": "builtins",
-    "float": "builtins",
-    "int": "builtins",
-    "list": "builtins",
-    "locals": "builtins",
-    "classmethod": "builtins",
-    "property": "builtins",
-    "range": "builtins",
-    "staticmethod": "builtins",
-    "str": "builtins",
-    "array": "array",
-    "Iterable": "collections.abc",
-    "Sequence": "collections.abc",
-    "IntEnum": "enum",
-    "Any": "typing",
-    "ClassVar": "typing",
-    "Final": "typing",
-    "TypeAlias": "typing",
-    "numpy": "",
-    "NDArray": "numpy.typing",
-    "ITERABLES": "ifgen_runtime.copying",
-    "array_repr": "ifgen_runtime.copying",
-    "arrays": "ifgen_runtime.copying",
-    "copied_array": "ifgen_runtime.copying",
-    "copied_list": "ifgen_runtime.copying",
-    "copied_other": "ifgen_runtime.copying",
-    "deepcopy_of": "ifgen_runtime.copying",
-    "new_array": "ifgen_runtime.copying",
-    "new_object": "ifgen_runtime.copying",
-    "repr_name": "ifgen_runtime.copying",
-    "repr_of_fields": "ifgen_runtime.copying",
-    "unequal": "ifgen_runtime.copying",
-    "Int8Array": "ifgen_runtime.views",
-    "UInt8Array": "ifgen_runtime.views",
-    "Int16Array": "ifgen_runtime.views",
-    "UInt16Array": "ifgen_runtime.views",
-    "Int32Array": "ifgen_runtime.views",
-    "UInt32Array": "ifgen_runtime.views",
-    "Int64Array": "ifgen_runtime.views",
-    "UInt64Array": "ifgen_runtime.views",
-    "Float32Array": "ifgen_runtime.views",
-    "Float64Array": "ifgen_runtime.views",
-    "Action": "ifgen_runtime.interface",
-    "Service": "ifgen_runtime.interface",
-    "ServiceMeta": "ifgen_runtime.interface",
-    "DEFAULT": "ifgen_runtime.message",
-    "Message": "ifgen_runtime.message",
-    "MessageMeta": "ifgen_runtime.message",
-    "NoSuchField": "ifgen_runtime.message",
-    "checks_by_default": "ifgen_runtime.message",
-    "default_of": "ifgen_runtime.message",
-    "enum_view": "ifgen_runtime.message",
-    "initialize_checked": "ifgen_runtime.message",
-    "mutable_default": "ifgen_runtime.message",
-    "note_field": "ifgen_runtime.message",
-}
+
+def _homes(names: Mapping[str, str]) -> Mapping[str, str]:
+    """The module of each name; `names` has the names of each module."""
+    return {name: module for module, text in names.items() for name in text.split()}
+
+
+IN_MESSAGES: Final = _homes(
+    {
+        "builtins": (
+            "Exception bool bytes dict float int list locals classmethod property range staticmethod str"
+        ),
+        "array": "array",
+        "collections.abc": "Iterable Sequence",
+        "enum": "IntEnum",
+        "typing": "Any ClassVar Final TypeAlias",
+        "": "numpy",
+        "numpy.typing": "NDArray",
+        "ifgen_runtime.copying": (
+            "ITERABLES array_repr arrays copied_array copied_list copied_other deepcopy_of new_array "
+            "new_object repr_name repr_of_fields unequal"
+        ),
+        "ifgen_runtime.views": (
+            "Int8Array UInt8Array Int16Array UInt16Array Int32Array UInt32Array Int64Array UInt64Array "
+            "Float32Array Float64Array"
+        ),
+        "ifgen_runtime.interface": "Action Service ServiceMeta",
+        "ifgen_runtime.message": (
+            "DEFAULT Message MessageMeta NoSuchField checks_by_default default_of enum_view "
+            "initialize_checked mutable_default note_field"
+        ),
+    }
+)
 """The modules of the names that modules of interfaces use; codecs use more of `ifgen_runtime.codec`."""
 
-IN_NODES: Final = {
-    "ABC": "abc",
-    "Callable": "collections.abc",
-    "FloatingPointRange": "rcl_interfaces.msg",
-    "IntegerRange": "rcl_interfaces.msg",
-    "ParameterDescriptor": "rcl_interfaces.msg",
-    "ActionClient": "rclpy.action",
-    "ActionServer": "rclpy.action",
-    "CancelResponse": "rclpy.action",
-    "GoalResponse": "rclpy.action",
-    "ClientGoalHandle": "rclpy.action.client",
-    "ServerGoalHandle": "rclpy.action.server",
-    "Client": "rclpy.client",
-    "Duration": "rclpy.duration",
-    "LifecycleNode": "rclpy.lifecycle",
-    "LifecyclePublisher": "rclpy.lifecycle",
-    "Node": "rclpy.node",
-    "Parameter": "rclpy.parameter",
-    "Publisher": "rclpy.publisher",
-    "DurabilityPolicy": "rclpy.qos",
-    "HistoryPolicy": "rclpy.qos",
-    "LivelinessPolicy": "rclpy.qos",
-    "QoSProfile": "rclpy.qos",
-    "ReliabilityPolicy": "rclpy.qos",
-    "Service": "rclpy.service",
-    "Subscription": "rclpy.subscription",
-    "Future": "rclpy.task",
-    "Timer": "rclpy.timer",
-}
+IN_NODES: Final = _homes(
+    {
+        "abc": "ABC",
+        "collections.abc": "Callable",
+        "rcl_interfaces.msg": "FloatingPointRange IntegerRange ParameterDescriptor",
+        "rclpy.action": "ActionClient ActionServer CancelResponse GoalResponse",
+        "rclpy.action.client": "ClientGoalHandle",
+        "rclpy.action.server": "ServerGoalHandle",
+        "rclpy.client": "Client",
+        "rclpy.duration": "Duration",
+        "rclpy.lifecycle": "LifecycleNode LifecyclePublisher",
+        "rclpy.node": "Node",
+        "rclpy.parameter": "Parameter",
+        "rclpy.publisher": "Publisher",
+        "rclpy.qos": "DurabilityPolicy HistoryPolicy LivelinessPolicy QoSProfile ReliabilityPolicy",
+        "rclpy.service": "Service",
+        "rclpy.subscription": "Subscription",
+        "rclpy.task": "Future",
+        "rclpy.timer": "Timer",
+    }
+)
 """The modules of the names that modules of nodes and of their tests use."""
 
 LINE_LENGTH = 110
@@ -188,3 +153,172 @@ def member_order(name: str) -> tuple[int, list[str | int]]:
 def natural(text: str) -> list[str | int]:
     """A key that sorts text by the value of the numbers in it."""
     return [int(part) if part.isdigit() else part for part in _DIGITS.split(text)]
+
+
+_CODEC: Final = "ifgen_runtime.codec"
+# Type checkers alone need these: importing typing takes longer than everything else in a message package.
+_FOR_TYPE_CHECKERS: Final = {
+    "typing",
+    "enum",
+    "numpy.typing",
+    "ifgen_runtime.views",
+    "",
+}
+
+
+class Scope(Names):
+    """The names that the module of an interface uses.
+
+    `package` is the module's own; `taken` are the classes, fields and constants of the module. If one of them
+    has a name that generated code needs, all our names have an underscore at their end in that module: no
+    class, field or constant can have such a name.
+    """
+
+    def __init__(self, package: str, taken: Iterable[str]) -> None:
+        super().__init__(IN_MESSAGES, package)
+        self.mark = "" if IN_MESSAGES.keys().isdisjoint(taken) else "_"
+        self._codec: set[Import] = set()
+        self._nested: set[tuple[str, str]] = set()
+
+    def __call__(self, name: str) -> str:
+        """How to spell a name of Python or ifgen_runtime."""
+        spelling = name + self.mark
+        self.add(IN_MESSAGES[name], name, spelling)
+        return spelling
+
+    def nested(self, purpose: Literal["default", "deepcopy"], reference: str) -> str:
+        """The function of the module that makes a default message of a class, or copies one deeply."""
+        self._nested.add((purpose, reference))
+        self(f"{purpose}_of")
+        return f"_{purpose}_{reference}"
+
+    def add_for_codec(self, names: Iterable[str], classes: Iterable[Import]) -> None:
+        """Import functions that codecs are made of, and classes that only they may need."""
+        self._codec.update((_CODEC, name, name) for name in names)
+        self._codec.update(classes)
+
+    @property
+    def nested_functions(self) -> tuple[str, ...]:
+        """The definitions of what `nested` was asked for."""
+        return tuple(
+            f"_{purpose}_{reference} = {purpose}_of{self.mark}({reference})"
+            for purpose, reference in sorted(self._nested)
+        )
+
+    @property
+    def imports(self) -> tuple[str, ...]:
+        """The import statements of run time."""
+        return statements(
+            (
+                (module, name, spelling)
+                for module, name, spelling in self._used
+                if module not in _FOR_TYPE_CHECKERS and (module != "builtins" or spelling != name)
+            ),
+            self._own_package,
+        )
+
+    @property
+    def typing_imports(self) -> tuple[str, ...]:
+        """The imports that only type checkers need."""
+        return statements((import_ for import_ in self._used if import_[0] in _FOR_TYPE_CHECKERS), indent=4)
+
+    @property
+    def lazy_imports(self) -> tuple[str, ...]:
+        """The replacements of those of `typing_imports` that are used at run time."""
+        return statements(
+            ("ifgen_runtime.lazy", name, spelling) for module, name, spelling in self._used if not module
+        )
+
+    @property
+    def codec_imports(self) -> tuple[str, ...]:
+        """The imports that only the codecs need."""
+        known = {spelling for _, _, spelling in self._used}
+        return statements(
+            (import_ for import_ in self._codec if import_[2] not in known), self._own_package, indent=4
+        )
+
+
+_UNFORMATTED: Final = "# fmt: off"
+# An import statement or the first line of code, at the left margin. Strings of many lines are skipped.
+_AT_MARGIN: Final = re.compile(
+    r"\n(?:from (?P<module>(?!__future__)\w[\w.]*) import (?:\((?P<lines>[\w\s,]+)\)|(?P<names>[\w, ]+))$"
+    r"|import (?P<modules>[\w., ]+)$"
+    r"""|(?P<head>[^\n"'#]*)\"{3}(?:\\.|[^\\])*?\"{3}"""
+    rf"|(?P<code>@|async def |def |class |\w+(?:: [^\n]+)? = |{_UNFORMATTED}$))",
+    re.MULTILINE | re.DOTALL,
+)
+
+
+@dataclass(slots=True)
+class _Run:
+    """Import statements with nothing but blank lines between them: where they are, and what they import."""
+
+    start: int
+    end: int
+    imports: set[Import] = field(default_factory=set[Import])
+
+
+def gathered(text: str, own_package: str) -> str:
+    """The text with all its import statements at its top, each once, as ruff sorts them.
+
+    There may be several runs of them at the top, with calls in between. A statement stays in its run, but the
+    standard library belongs to the first. Whatever comes after the first line of code goes to the last one. A
+    statement with a comment stays where it is.
+    """
+    text = f"\n{text}"
+    top, scattered, code = _runs(text)
+    if not top:
+        if not scattered:
+            return text[1:]
+        top = [_Run(code, code)]
+    for run in (*top[1:], *scattered):
+        standard = {import_ for import_ in run.imports if _package(import_) in stdlib_module_names}
+        top[0].imports |= standard
+        run.imports -= standard
+    for run in scattered:
+        top[-1].imports |= run.imports
+        run.imports = set()
+    parts: list[str] = []
+    end = 0
+    for run in (*top, *scattered):
+        lines = statements(run.imports, own_package)
+        parts += [text[end : run.start], *(f"\n{line}" for line in lines)]
+        end = run.end
+    return "".join([*parts, text[end:]])[1:]
+
+
+def _runs(text: str) -> tuple[list[_Run], list[_Run], int]:
+    """The runs at the top, those after the first line of code, and where that is."""
+    top: list[_Run] = []
+    scattered: list[_Run] = []
+    code = len(text)
+    last = max(text.rfind("\nfrom "), text.rfind("\nimport "))
+    for match in _AT_MARGIN.finditer(text):
+        if match.start() > last:
+            break
+        if match["code"]:
+            if top or match["code"] != _UNFORMATTED:  # which may hold for the whole file
+                code = min(code, match.start())
+        elif match["head"] is not None:
+            if "=" in match["head"] and not match["head"].startswith(" "):
+                code = min(code, match.start())
+        elif match.start() > code:
+            scattered.append(_Run(match.start(), match.end(), set(_imports(match))))
+        else:
+            if not top or text[top[-1].end : match.start()].strip():
+                top.append(_Run(match.start(), match.end()))
+            top[-1].end = match.end()
+            top[-1].imports.update(_imports(match))
+    return top, scattered, code
+
+
+def _imports(match: re.Match[str]) -> Iterator[Import]:
+    names = match["modules"] or match["lines"] or match["names"]
+    for part in filter(None, map(str.strip, names.split(","))):
+        name, _, spelling = part.partition(" as ")
+        yield match["module"] or "", name, spelling or name
+
+
+def _package(import_: Import) -> str:
+    module, name, _ = import_
+    return (module or name).partition(".")[0]

@@ -2,62 +2,29 @@
 
 from __future__ import annotations
 
-import re
-from typing import Protocol
+from typing import TypeAlias
 
-from ifgen.definition import names
-from ifgen.definition.interfaces import Field
-
-_WORD_START = re.compile("(.)([A-Z][a-z]+)")
-_LOWER_BEFORE_UPPER = re.compile("([a-z0-9])([A-Z])")
+from ifgen.definition.interfaces import Field, Interface
+from ifgen.definition.names import attribute_name, snake_case
+from ifgen.definition.types import NamespacedType
 
 # Parts of an interface share its module; longer suffixes come first, since one can end in another.
 _PART_SUFFIXES = {
     "srv": ("_Request", "_Response", "_Event"),
     "action": (
-        "_SendGoal_Request",
-        "_SendGoal_Response",
-        "_SendGoal_Event",
-        "_SendGoal",
-        "_GetResult_Request",
-        "_GetResult_Response",
-        "_GetResult_Event",
-        "_GetResult",
-        "_FeedbackMessage",
-        "_Goal",
-        "_Result",
-        "_Feedback",
+        *("_SendGoal_Request", "_SendGoal_Response", "_SendGoal_Event", "_SendGoal"),
+        *("_GetResult_Request", "_GetResult_Response", "_GetResult_Event", "_GetResult"),
+        *("_FeedbackMessage", "_Goal", "_Result", "_Feedback"),
     ),
 }
 
 
-class TypeName(Protocol):
-    """The common part of a `Message` and a `NamespacedType`."""
-
-    @property
-    def package(self) -> str:
-        """The interface package."""
-        ...
-
-    @property
-    def folder(self) -> str:
-        """`msg`, `srv` or `action`."""
-        ...
-
-    @property
-    def name(self) -> str:
-        """The class name, such as `AddTwoInts_Request`."""
-        ...
+TypeName: TypeAlias = Interface | NamespacedType
 
 
 def module_name(interface_name: str) -> str:
     """The module of an interface, by rosidl's rule: `PointCloud2` is in `_point_cloud2`."""
     return f"_{snake_case(interface_name)}"
-
-
-def snake_case(name: str) -> str:
-    """`point_cloud2` for `PointCloud2`, as rosidl names files."""
-    return _LOWER_BEFORE_UPPER.sub(r"\1_\2", _WORD_START.sub(r"\1_\2", name)).lower()
 
 
 def interface_name(type_name: TypeName) -> str:
@@ -83,19 +50,9 @@ def _module_of(type_name: TypeName) -> tuple[str, str, str]:
     return type_name.package, type_name.folder, interface_name(type_name)
 
 
-def attribute_name(field: Field) -> str:
-    """The public attribute and keyword of a field: `from_` for `from`, since Python keeps that word."""
-    return names.attribute_name(field.name)
-
-
 def slot_name(field: Field) -> str:
     """The private attribute of a field, which reaches the value whatever the public one does: `_x`."""
     return f"_{attribute_name(field)}"
-
-
-def default_name(field: Field) -> str:
-    """The class attribute that holds the default value of a field: `X__DEFAULT`."""
-    return names.default_name(field.name)
 
 
 def enum_name(field: Field) -> str:

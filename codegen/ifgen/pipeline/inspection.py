@@ -49,7 +49,7 @@ def inspect(
     try:
         packages = find_packages(paths)
         if exclude:
-            from ifgen.pipeline.leaving_out import without_excluded
+            from ifgen.pipeline.resolution import without_excluded
 
             packages, excluded = without_excluded(packages, exclude)
         search = SearchPath(packages, include)
@@ -72,9 +72,9 @@ def inspect(
         except InputError as error:
             found += error.diagnostics
     if excluded:
-        from ifgen.pipeline.leaving_out import mistakes
+        from ifgen.pipeline.resolution import about_the_rest
 
-        found = mistakes(found, packages, excluded)
+        found = about_the_rest(found, packages, excluded)
     # A node's package has its interfaces looked at twice.
     by_severity = sorted(
         one_for_each_cause(dict.fromkeys(judged(found, ros_distro))),
@@ -94,22 +94,22 @@ def inspect_templates(
     """
     from ifgen.generator_py.outputs.plan import mistakes
     from ifgen.generator_py.templates.render import look_for_problems
-    from ifgen.pipeline.planning import plan
-    from ifgen.pipeline.rendering import render
+    from ifgen.pipeline.cache.fresh import UpToDate
+    from ifgen.pipeline.planning import plan, render
     from ifgen.pipeline.resolution import resolve
-    from ifgen.pipeline.values import Inputs
+    from ifgen.pipeline.values import Request
 
     found = [*look_for_problems(custom), *mistakes(custom.outputs)]
     if any_errors(found) or not paths:
         return found
     try:
         packages = find_packages(paths)
-        search = SearchPath(packages, include)
-        job = resolve(Inputs(tuple(paths), packages, search, output, False, custom))
+        request = Request(tuple(paths), packages, SearchPath(packages, include), output, custom=custom)
+        resolved = resolve(request)
     except InputError:
         return found
     try:
-        deque(render(plan(job, custom), custom), maxlen=0)
+        deque(render(plan(resolved, custom, UpToDate()), custom), maxlen=0)
     except InputError as error:
         found += error.diagnostics
     return found

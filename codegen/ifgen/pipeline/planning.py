@@ -1,65 +1,88 @@
-"""From a job to planned files: which there are in each package, from which template, with what in it."""
+"""Plans the files of each package, which template makes each and with what in it, and renders them."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization, Distributions
 from ifgen.definition.interfaces import InterfacePackage
+from ifgen.diagnostics import Diagnostic, InputError, Label
 from ifgen.generator_py.artifact import Artifact, OutputFile
-from ifgen.generator_py.messages.facts import Facts
-from ifgen.pipeline import earlier
-from ifgen.pipeline.extra_outputs import ExtraOutputs
-from ifgen.pipeline.job import Job, PlannedPackage, Target
-from ifgen.pipeline.values import Progress
-from ifgen.reading import manifest, package_xml
+from ifgen.generator_py.messages.classes import Facts
+from ifgen.generator_py.messages.package import module_path, plan_interface, plan_shared
+from ifgen.generator_py.templates.render import Templates
+from ifgen.generator_py.tests.package import plan_interface_tests, plan_node_tests, plan_users_tests
+from ifgen.pipeline import previous_output
+from ifgen.pipeline.cache.fresh import UpToDate
+from ifgen.pipeline.values import PlannedPackage, Progress, ResolvedInput, Target
+from ifgen.reading import package_xml
 from ifgen.reading.packages import NODE_FOLDER
-from ifgen.writing.write import ROOT
+from ifgen.writing.write import ROOT, OutputPackage
 
 if TYPE_CHECKING:
-    from ifgen.nodl.model import NodePackage
-    from ifgen.pipeline.freshness.modules import Modules
+    from ifgen.generator_py.outputs.plan import PlannedOutput
+    from ifgen.generator_py.outputs.view import PackageView
+    from ifgen.nodl.model import NodeDescription
 
-# Late imports: a run may be about interfaces only, or about nodes.
+# Late imports: what a run needs that is about nodes, makes packages for pip, or has outputs of the user's.
 
 
 def plan(
-    job: Job,
-    custom: Customization,
-    skipped: Collection[str] = (),
-    modules: Modules | None = None,
-    progress: Progress | None = None,
+    resolved: ResolvedInput, custom: Customization, up_to_date: UpToDate, progress: Progress | None = None
 ) -> Iterator[PlannedPackage]:
-    """The files of a job, a package at a time, so that `progress` hears of each; without those `skipped`.
+    """The files of a run that are not up to date, a package at a time, so that `progress` hears of each.
 
-    `modules` may have some that need no work. Raises InputError for outputs of the user's that cannot be.
+    Raises InputError for outputs of the user's that cannot be.
     """
-    targets = [target for target in job.targets if target.name not in skipped]
+    targets = [target for target in resolved.targets if target.name not in up_to_date.packages]
     if not targets and not custom.outputs:
         return
-    planning = _Planning(job, custom, modules)
-    extra = ExtraOutputs(custom, job)
+    planning = _Planning(resolved, custom, up_to_date)
+    outputs = _Outputs(custom, resolved) if custom.outputs else None
     for done, target in enumerate(targets):
         if progress:
             progress(done, len(targets), target.name)
-        yield extra.add(planning.package(target))
-    yield from extra.of_run(_has_manifest(job.output / ROOT))
+        package = planning.package(target)
+        yield outputs.added_to(package) if outputs else package
+    root = outputs.of_run() if outputs else {}
+    # An earlier run may have made some, which go if there are none now.
+    if root or (not custom.partial and previous_output.manifest_of(resolved.output / ROOT)):
+        yield PlannedPackage(ROOT, root)
+
+
+def render(planned: Iterable[PlannedPackage], custom: Customization) -> Iterator[OutputPackage]:
+    """The packages with the texts of their files. Raises InputError for a template that is wrong."""
+    templates: Templates | None = None  # the user's filters are loaded only if they are needed
+    for package in planned:
+        templates = templates or Templates(custom)
+        yield OutputPackage(
+            package.name,
+            _texts(package.files, templates),
+            package.interfaces,
+            package.source,
+            _texts(package.beside, templates),
+            _texts(package.once, templates),
+        )
+
+
+def _texts(files: Mapping[str, Artifact | OutputFile], templates: Templates) -> dict[str, str]:
+    return {
+        path: file.text if isinstance(file, OutputFile) else templates.render(file).text
+        for path, file in files.items()
+    }
 
 
 class _Planning:
-    """Plans the packages of a job; `modules` are those of interfaces that need no work."""
+    """Plans the packages of a run."""
 
-    def __init__(self, job: Job, custom: Customization, modules: Modules | None) -> None:
-        self._job = job
-        self._tests = custom.tests
-        self._distributions, self._requirements = custom.distributions, custom.requirements
-        self._modules = modules
-        self._facts = Facts(job.registry)
-        self._sources = {package.name: earlier.source_of(package, job.output) for package in job.packages}
+    def __init__(self, resolved: ResolvedInput, custom: Customization, up_to_date: UpToDate) -> None:
+        self._resolved = resolved
+        self._custom = custom
+        self._up_to_date = up_to_date
+        self._facts = Facts(resolved.registry)
+        self._sources = {p.name: previous_output.source_of(p, resolved.output) for p in resolved.packages}
 
     def package(self, target: Target) -> PlannedPackage:
         """The files of a package."""
@@ -67,25 +90,29 @@ class _Planning:
         names: list[str] = []
         files: list[Artifact | OutputFile] = []
         users: list[Artifact] = []
-        if self._distributions is not None:
+        if self._custom.distributions is not None:
             from ifgen.generator_py.outputs import installable
 
             if installable.is_installable(target.name):
-                ensured = installable.from_runtime(target.interfaces, target.nodes, self._job.registries)
-                files += self._for_pip(target, self._distributions)
+                ensured = installable.from_runtime(target.interfaces, target.nodes, self._resolved.registries)
+                files += self._for_pip(target, self._custom.distributions)
         if target.interfaces is not None:
             files += self._of_interfaces(target, target.interfaces, ensured)
             names += (f"{interface.folder}/{interface.name}" for interface in target.interfaces.interfaces)
         if target.nodes is not None:
-            files += self._of_nodes(target.nodes, target.interfaces, ensured)
-            users += self._of_users(target.nodes)
+            from ifgen.generator_py.nodes.package import plan_nodes, plan_users_files
+
+            files += plan_nodes(target.nodes, target.interfaces, ensured, self._custom.requirements)
+            users += plan_users_files(target.nodes)  # they are the user's once they are written
+            if self._custom.tests and self._resolved.nodes is not None:
+                files += plan_node_tests(target.nodes, self._resolved.nodes.registry)
+                users += plan_users_tests(target.nodes, self._resolved.nodes.registry)
             names += (f"{NODE_FOLDER}/{node.name}" for node in target.nodes.nodes)
-        source = self._sources.get(target.name)
         return PlannedPackage(
             target.name,
             {file.path: file for file in files},
             tuple(sorted(names)),
-            source,
+            self._sources.get(target.name),
             once={file.path: file for file in users},
         )
 
@@ -93,12 +120,12 @@ class _Planning:
         """The files that make a package installable by pip."""
         from ifgen.generator_py.outputs.installable import definitions, plan_project
 
-        job = self._job
-        root = next((package.root for package in job.packages if package.name == target.name), None)
+        resolved = self._resolved
+        root = next((package.root for package in resolved.packages if package.name == target.name), None)
         said = (package_xml.texts(root) if root else None) or {}
-        ours = {target.name for target in job.targets} | earlier.packages_in(job.output)
+        ours = {target.name for target in resolved.targets} | previous_output.packages_in(resolved.output)
         yield plan_project(
-            target.name, target.interfaces, target.nodes, said, distributions, self._requirements, ours
+            target.name, target.interfaces, target.nodes, said, distributions, self._custom.requirements, ours
         )
         for path, text in definitions(target.interfaces).items() if target.interfaces else ():
             yield OutputFile(_inner(target) + path, text)
@@ -106,39 +133,17 @@ class _Planning:
     def _of_interfaces(
         self, target: Target, package: InterfacePackage, ensured: tuple[str, ...]
     ) -> Iterator[Artifact | OutputFile]:
-        from ifgen.generator_py.messages.package import module_path, plan_interface, plan_shared
-        from ifgen.generator_py.tests.package import plan_interface_tests
-
         for artifact in plan_shared(package, ensured):
             yield replace(artifact, path=_inner(target) + artifact.path)
         for interface in package.interfaces:
             path = _inner(target) + module_path(interface)
-            text = self._modules.text(interface, path) if self._modules else None
+            text = self._up_to_date.module(interface, self._resolved.registry, path)
             if text is not None:
                 yield OutputFile(path, text)
             else:
                 yield replace(plan_interface(interface, self._facts), path=path)
-        if self._tests:
-            yield from plan_interface_tests(package, self._job.registry)
-
-    def _of_nodes(
-        self, package: NodePackage, interfaces: InterfacePackage | None, ensured: tuple[str, ...]
-    ) -> Iterator[Artifact]:
-        from ifgen.generator_py.nodes.package import plan_nodes
-        from ifgen.generator_py.tests.package import plan_node_tests
-
-        yield from plan_nodes(package, interfaces, ensured, self._requirements)
-        if self._tests and self._job.nodes is not None:
-            yield from plan_node_tests(package, self._job.nodes.registry)
-
-    def _of_users(self, package: NodePackage) -> Iterator[Artifact]:
-        """The files that are the user's once they are written."""
-        from ifgen.generator_py.nodes.package import plan_users_files
-        from ifgen.generator_py.tests.package import plan_users_tests
-
-        yield from plan_users_files(package)
-        if self._tests and self._job.nodes is not None:
-            yield from plan_users_tests(package, self._job.nodes.registry)
+        if self._custom.tests:
+            yield from plan_interface_tests(package, self._resolved.registry)
 
 
 def _inner(target: Target) -> str:
@@ -146,7 +151,58 @@ def _inner(target: Target) -> str:
     return "" if target.nodes is None else f"{target.name}/"
 
 
-def _has_manifest(folder: Path) -> bool:
-    with suppress(OSError, ValueError):
-        return manifest.read(folder) is not None
-    return False
+class _Outputs:
+    """The outputs of `[tool.ifgen.outputs]`, planned for all packages of a run.
+
+    Raises InputError for outputs that cannot be.
+    """
+
+    def __init__(self, custom: Customization, resolved: ResolvedInput) -> None:
+        from ifgen.generator_py.outputs.plan import plan_outputs  # of use to few
+
+        import_folders = {target.name: target.import_folder for target in resolved.targets if target.nodes}
+        views = tuple(_views(resolved))
+        self._planned = plan_outputs(custom.outputs, views, import_folders, partial=custom.partial)
+
+    def added_to(self, package: PlannedPackage) -> PlannedPackage:
+        """The package with its outputs, some of which may be beside it."""
+        files, beside = dict(package.files), dict(package.beside)
+        for planned in self._planned:
+            if planned.package == package.name:
+                path = planned.artifact.path
+                inside = path.removeprefix(f"{package.name}/")
+                is_beside = inside == path
+                if path in beside if is_beside else inside in files or inside in package.once:
+                    raise InputError([_taken(planned)])
+                if is_beside:
+                    beside[path] = planned.artifact
+                else:
+                    files[inside] = planned.artifact
+        return replace(package, files=files, beside=beside)
+
+    def of_run(self) -> dict[str, Artifact]:
+        """The outputs of the whole run, by their paths."""
+        return {p.artifact.path: p.artifact for p in self._planned if p.package is None}
+
+
+def _views(resolved: ResolvedInput) -> Iterator[PackageView]:
+    # Few users have outputs of their own.
+    from ifgen.generator_py.outputs.interfaces import interface_view
+    from ifgen.generator_py.outputs.nodes import node_view
+    from ifgen.generator_py.outputs.view import PackageView
+
+    for target in resolved.targets:
+        interfaces = target.interfaces.interfaces if target.interfaces else ()
+        nodes: Sequence[NodeDescription] = target.nodes.nodes if target.nodes else ()
+        yield PackageView(
+            target.name,
+            tuple(interface_view(interface, resolved.registry) for interface in interfaces),
+            tuple(map(node_view, sorted(nodes, key=lambda node: node.name))),
+        )
+
+
+def _taken(planned: PlannedOutput) -> Diagnostic:
+    output = planned.output
+    label = None if output.span is None else Label(output.span)
+    message = f"output '{output.name}' cannot be made: ifgen writes its own file at '{planned.artifact.path}'"
+    return Diagnostic("same-path", message, label, help="replace the template of that file, or choose a path")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -13,10 +13,9 @@ from ifgen import resources
 from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.pipeline import earlier, provision, remarks
-from ifgen.pipeline.freshness.comparison import Unchanged
-from ifgen.pipeline.freshness.run import unless_fresh
-from ifgen.pipeline.values import Condition, Inputs, LeftOut, Made, Progress
+from ifgen.pipeline import output_diagnostics, previous_output
+from ifgen.pipeline.cache.fresh import UpToDate, unless_up_to_date
+from ifgen.pipeline.values import BuildResult, Condition, LeftOut, Progress, Request
 from ifgen.reading.packages import find_packages
 from ifgen.reading.search_path import SearchPath, WithDeps
 from ifgen.writing import transaction, write
@@ -76,7 +75,7 @@ def generate(  # noqa: PLR0913 - one for each option
     mistakes are then among the diagnostics.
     """
     with transaction.locked(Path(output)):
-        inputs = _read(
+        request = _read(
             paths,
             Path(output),
             include,
@@ -86,7 +85,7 @@ def generate(  # noqa: PLR0913 - one for each option
             exclude=exclude,
             keep_going=keep_going,
         )
-        return unless_fresh(inputs, partial(_make, progress=progress), _prepared)
+        return unless_up_to_date(request, partial(_build, progress=progress), _prepared)
 
 
 def drift(  # noqa: PLR0913 - one for each option
@@ -104,14 +103,12 @@ def drift(  # noqa: PLR0913 - one for each option
 
     Everything is rendered, so that neither a cache nor an edited manifest can hide a difference.
     """
-    inputs = _read(
+    request = _read(
         paths, Path(output), include, with_deps, templates, condition, exclude=exclude, keep_going=keep_going
     )
-    made = _make(inputs, Unchanged(), progress)
-    left: list[Path] = []
-    packages, missing = _with_those_that_go(inputs, made, left)
-    drifts = write.drift(packages, inputs.output)
-    return Drifted(drifts, (*map(remarks.left_behind, sorted(left)), *made.told, *missing), made.left_out)
+    change = _Change(request, _build(request, UpToDate(), progress))
+    drifts = write.drift(change.packages(), request.output)
+    return Drifted(drifts, change.diagnostics(), change.result.left_out)
 
 
 def check(*paths: Path | str, include: Sequence[Path | str] = ()) -> tuple[Diagnostic, ...]:
@@ -140,10 +137,10 @@ def registries(
 
     Writes nothing. Raises InputError with all mistakes.
     """
-    from ifgen.pipeline.leaving_out import resolve_what_can_be
+    from ifgen.pipeline.resolution import resolve_what_can_be
 
-    job, _, _ = resolve_what_can_be(_read(paths, Path(output), include, with_deps, None, exclude=exclude))
-    return job.registries
+    request = _read(paths, Path(output), include, with_deps, exclude=exclude)
+    return resolve_what_can_be(request).registries
 
 
 def type_hash(type_name: str, *paths: Path | str, include: Sequence[Path | str] = ()) -> str:
@@ -163,91 +160,100 @@ def _read(  # noqa: PLR0913 - the options of the functions above
     output: Path,
     include: Sequence[Path | str],
     with_deps: WithDeps,
-    templates: Path | str | Customization | None,
+    templates: Path | str | Customization | None = None,
     condition: Condition | None = None,
     *,
     exclude: Sequence[str] = (),
     keep_going: bool = False,
-) -> Inputs:
-    packages = tuple(earlier.with_siblings(package, output) for package in find_packages(paths))
+) -> Request:
+    packages = tuple(previous_output.with_siblings(package, output) for package in find_packages(paths))
     excluded: tuple[str, ...] = ()
     if exclude:
-        from ifgen.pipeline.leaving_out import without_excluded
+        from ifgen.pipeline.resolution import without_excluded
 
         packages, excluded = without_excluded(packages, exclude)
-    problems = [
-        remarks.into_its_source(p) for p in packages if (output / p.name).resolve() == p.root.resolve()
-    ]
-    if problems:
+    if problems := [
+        output_diagnostics.into_its_source(package)
+        for package in packages
+        if (output / package.name).resolve() == package.root.resolve()
+    ]:
         raise UsageError(problems)
-    if not isinstance(templates, Customization):
-        templates = Customization(Path(templates) if templates else None)
-    search = SearchPath(packages, include)
-    roots = tuple(map(Path, paths))
-    return Inputs(roots, packages, search, output, with_deps, templates, condition, excluded, keep_going)
+    return Request(
+        paths=tuple(map(Path, paths)),
+        packages=packages,
+        search=SearchPath(packages, include),
+        output=output,
+        with_deps=with_deps,
+        custom=templates
+        if isinstance(templates, Customization)
+        else Customization(Path(templates) if templates else None),
+        condition=condition,
+        excluded=excluded,
+        keep_going=keep_going,
+    )
 
 
-def _make(inputs: Inputs, unchanged: Unchanged, progress: Progress | None) -> Made:
-    """Resolve -> plan -> render what is not as it has to be."""
-    from ifgen.pipeline.leaving_out import resolve_what_can_be
-    from ifgen.pipeline.planning import plan
-    from ifgen.pipeline.rendering import render
+def _build(request: Request, up_to_date: UpToDate, progress: Progress | None) -> BuildResult:
+    """Resolve -> plan -> render what is not up to date."""
+    from ifgen.pipeline.planning import plan, render
+    from ifgen.pipeline.resolution import resolve_what_can_be
 
-    job, left_out, mistakes = resolve_what_can_be(inputs)
-    if inputs.condition is not None:
-        inputs.condition.check(job.registries)
-    modules = unchanged.modules(job.registry)
-    planned = plan(job, inputs.custom, unchanged.packages, modules, progress)
-    packages = render(planned, inputs.custom)
-    generated = {target.name for target in job.targets}
-    told = (*mistakes, *job.warnings())
-    return Made(packages, generated, job.needed, told, unchanged.packages, job, modules, left_out)
+    resolved = resolve_what_can_be(request)
+    if request.condition is not None:
+        request.condition.check(resolved.registries)
+    return BuildResult(
+        packages=render(plan(resolved, request.custom, up_to_date, progress), request.custom),
+        generated={target.name for target in resolved.targets},
+        needed=resolved.needed,
+        diagnostics=resolved.diagnostics(),
+        skipped=up_to_date.packages,
+        resolved=resolved,
+    )
+
+
+class _Change:
+    """The change that a run makes to its output: packages to write, packages to remove, and diagnostics."""
+
+    def __init__(self, request: Request, result: BuildResult) -> None:
+        self.result = result
+        self._output, self._search = request.output, request.search
+        self._removed = previous_output.to_remove(request, result)
+        self._left_behind: list[Path] = []
+
+    def packages(self) -> Iterator[OutputPackage]:
+        """The packages, in which `diagnostics` then knows the user's files that nothing uses any more."""
+        for package in chain((OutputPackage(name, {}) for name in self._removed), self.result.packages):
+            self._left_behind += write.left_behind(package, self._output)
+            yield package
+
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics of the run, and about the output after it."""
+        left_behind = map(output_diagnostics.left_behind, sorted(self._left_behind))
+        missing = output_diagnostics.missing_packages(
+            self.result.needed, self._search, self._output, self._removed
+        )
+        return (*self.result.diagnostics, *left_behind, *missing)
+
+    def effects(self, written: Written) -> Generated:
+        """The effects of the run, after files were written."""
+        skipped = (
+            path
+            for name, manifest in self.result.skipped.items()
+            for path in write.files_of(self._output / name, self._output, manifest)
+        )
+        overwritten = output_diagnostics.overwritten(written.edited, self._output)
+        return Generated(
+            written.written,
+            tuple(sorted((*written.unchanged, *skipped))),
+            written.removed,
+            written.kept,
+            (*map(output_diagnostics.edited, written.kept), *overwritten, *self.diagnostics()),
+            self.result.left_out,
+        )
 
 
 @contextmanager
-def _prepared(inputs: Inputs, made: Made) -> Generator[Callable[[], Generated]]:
-    left: list[Path] = []
-    packages, missing = _with_those_that_go(inputs, made, left)
-    with write.prepared(packages, inputs.output, GENERATOR) as finish:
-        yield lambda: _generated(inputs, made, finish(), (*map(remarks.left_behind, sorted(left)), *missing))
-
-
-def _generated(inputs: Inputs, made: Made, done: Written, found: Iterable[Diagnostic]) -> Generated:
-    output = inputs.output
-    skipped = (
-        path
-        for name, record in made.skipped.items()
-        for path in write.files_of(output / name, output, record)
-    )
-    unchanged = tuple(sorted((*done.unchanged, *skipped)))
-    edited = (*map(remarks.edited, done.kept), *remarks.overwritten(done.edited, output))
-    diagnostics = (*edited, *made.told, *found)
-    return Generated(done.written, unchanged, done.removed, done.kept, diagnostics, made.left_out)
-
-
-def _with_those_that_go(
-    inputs: Inputs, made: Made, left: list[Path]
-) -> tuple[Iterator[OutputPackage], tuple[Diagnostic, ...]]:
-    """The packages to write and to remove, and what will be missing.
-
-    Each of these packages adds the user's files that nothing uses any more to `left`.
-    """
-    going = list(earlier.gone(inputs.paths, inputs.packages, made.generated, inputs.output))
-    left_out = {
-        name for name in (*inputs.excluded, *(each.name for each in made.left_out)) if "/" not in name
-    }
-    left_out |= {package.name for package in inputs.packages} - {*made.generated, write.ROOT}
-    known = {package.name for package in going}
-    going += [
-        OutputPackage(name, {})
-        for name in sorted(left_out - known)
-        if earlier.record_of(inputs.output / name) is not None
-    ]
-    gone = {package.name for package in going}
-
-    def packages() -> Iterator[OutputPackage]:
-        for package in chain(going, made.packages):
-            left.extend(write.left_behind([package], inputs.output))
-            yield package
-
-    return packages(), provision.missing(made.needed, inputs.search, inputs.output, gone)
+def _prepared(request: Request, result: BuildResult) -> Generator[Callable[[], Generated]]:
+    change = _Change(request, result)
+    with write.prepared(change.packages(), request.output, GENERATOR) as finish:
+        yield lambda: change.effects(finish())

@@ -1,23 +1,24 @@
-"""The first and the last value of a run, which it needs even where nothing has changed."""
+"""The values of a run, from the request to the files that were built."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization
+from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic
+from ifgen.generator_py.artifact import Artifact, OutputFile
+from ifgen.reading import package_xml
 from ifgen.reading.manifest import Manifest
-from ifgen.reading.packages import PackageFiles
+from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
 from ifgen.reading.search_path import SearchPath, WithDeps
 from ifgen.writing.write import OutputPackage
 
 if TYPE_CHECKING:
-    from ifgen.definition.interfaces import Registry
-    from ifgen.pipeline.freshness.modules import Modules
-    from ifgen.pipeline.job import Job
+    from ifgen.nodl.model import NodePackage, Nodes
 
 Progress = Callable[[int, int, str], object]
 """Called with the packages done, the packages in all, and the one that is next."""
@@ -35,20 +36,20 @@ class Condition:
 
 
 @dataclass(frozen=True, slots=True)
-class Inputs:
-    """The input of a run: the packages at `paths`, and the places to look for others.
+class Request:
+    """The packages at `paths` to generate into the folder `output`, and the places to look for others.
 
-    They are generated into the folder `output`, `with_deps` or without, with what the user adds to them.
-    A run that does not meet the `condition` writes nothing. `excluded` are the names of packages, interfaces
-    and nodes that the user leaves out; a run that is to `keep_going` leaves out what is wrong, too.
+    `with_deps` says which dependencies come along, `custom` has what the user adds. A run that does not meet
+    the `condition` writes nothing. `excluded` are the names of packages, interfaces and nodes that the user
+    leaves out; a run that is to `keep_going` leaves out what is wrong, too.
     """
 
     paths: tuple[Path, ...]
     packages: tuple[PackageFiles, ...]
     search: SearchPath
     output: Path
-    with_deps: WithDeps
-    custom: Customization
+    with_deps: WithDeps = False
+    custom: Customization = Customization()  # noqa: RUF009 - it is frozen
     condition: Condition | None = None
     excluded: tuple[str, ...] = ()
     keep_going: bool = False
@@ -63,21 +64,104 @@ class LeftOut:
 
 
 @dataclass(frozen=True, slots=True)
-class Made:
+class Target:
+    """A package to generate: its interfaces, its nodes, or both."""
+
+    name: str
+    interfaces: InterfacePackage | None
+    nodes: NodePackage | None
+
+    @property
+    def import_folder(self) -> str:
+        """The folder that Python imports, from the output folder."""
+        return self.name if self.nodes is None else f"{self.name}/{self.name}"
+
+    @property
+    def described(self) -> tuple[str, ...]:
+        """Its descriptions of nodes, and of parts of nodes, as `pkg/nodl/name`."""
+        files = self.nodes.sources if self.nodes else ()
+        root = self.nodes.root.resolve() / NODE_FOLDER if self.nodes else None
+        own = (node_name(file.path.name) for file in files if file.path.resolve().parent == root)
+        return tuple(f"{self.name}/{NODE_FOLDER}/{name}" for name in own if name)
+
+    @property
+    def documents(self) -> tuple[Path, ...]:
+        """The paths of everything that was read for its nodes."""
+        if self.nodes is None:
+            return ()
+        return (*(source.path for source in self.nodes.sources), self.nodes.root / package_xml.NAME)
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedInput:
+    """The packages of a run, into the folder `output`; `registry` has what their interfaces need.
+
+    `left_out` is in none of them, and the `mistakes` are the reason for some of that.
+    """
+
+    packages: tuple[PackageFiles, ...]
+    registry: Registry
+    nodes: Nodes | None
+    targets: tuple[Target, ...]
+    output: Path
+    left_out: tuple[LeftOut, ...] = ()
+    mistakes: tuple[Diagnostic, ...] = ()
+
+    @property
+    def registries(self) -> tuple[Registry, ...]:
+        """The packages that interfaces need, and those that nodes need, if there are any."""
+        return (self.registry, self.nodes.registry) if self.nodes else (self.registry,)
+
+    @property
+    def needed(self) -> set[str]:
+        """The packages that are needed and not generated."""
+        names = {name for registry in self.registries for name in registry.packages}
+        return names - {target.name for target in self.targets}
+
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The diagnostics about everything that was read, and about the user's modules in the output."""
+        of_nodes = self.nodes.warnings if self.nodes else ()
+        warnings = dict.fromkeys((*self.registry.warnings, *of_nodes, *self._about_users_modules()))
+        return (*self.mistakes, *warnings)
+
+    def _about_users_modules(self) -> Iterator[Diagnostic]:
+        for target in self.targets:
+            if target.nodes is not None:
+                from ifgen.pipeline.user_code import compare  # of no use where there are interfaces only
+
+                yield from compare(target.nodes, self.output / target.import_folder)
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedPackage:
+    """An `OutputPackage` to be: what each of its files is made of, or its text where that is known."""
+
+    name: str
+    files: Mapping[str, Artifact | OutputFile]
+    interfaces: tuple[str, ...] = ()
+    source: str | None = None
+    beside: Mapping[str, Artifact] = field(default_factory=dict[str, Artifact])
+    once: Mapping[str, Artifact] = field(default_factory=dict[str, Artifact])
+
+
+@dataclass(frozen=True, slots=True)
+class BuildResult:
     """The files that a run writes, and the diagnostics about their sources.
 
     `packages` are rendered when they are asked for, which is once: a large run has no room for all of them.
     `generated` are the names of its packages. Those among them that are `skipped` are on disk already, each
-    with its manifest, and not in `packages`. `needed` are others that these need. `job` is what was resolved,
-    and `modules` knows the digests of its interfaces; None if nothing had to be. `left_out` is not in
-    `packages`.
+    with its manifest, and not in `packages`. `needed` are others that these need. `resolved` is None if
+    nothing had to be.
     """
 
     packages: Iterable[OutputPackage]
     generated: Collection[str]
     needed: Collection[str]
-    told: tuple[Diagnostic, ...]
+    diagnostics: tuple[Diagnostic, ...]
     skipped: Mapping[str, Manifest]
-    job: Job | None = None
-    modules: Modules | None = None
-    left_out: tuple[LeftOut, ...] = ()
+    resolved: ResolvedInput | None = None
+
+    @property
+    def left_out(self) -> tuple[LeftOut, ...]:
+        """The names that the run leaves out, which are not in `packages`."""
+        return self.resolved.left_out if self.resolved else ()

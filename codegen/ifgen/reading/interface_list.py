@@ -18,7 +18,7 @@ from ifgen.reading import storage
 from ifgen.reading.listed_file import EXTENSIONS, GENERATE, ListedFile
 
 if TYPE_CHECKING:
-    from ifgen.reading.cmake.calls import Followed
+    from ifgen.reading.cmake.interpreter import Followed
     from ifgen.reading.cmake.values import Doubt
 
 # Late imports: to follow a list is worth its imports only where there is one.
@@ -85,7 +85,7 @@ def of_source(
     lower = source.text.lower()
     if GENERATE not in lower and not (lies_there and any(word in lower for word in _FOLLOWED)):
         return _never_called(source, lies_there)
-    from ifgen.reading.cmake.script import follow
+    from ifgen.reading.cmake.interpreter import follow
 
     followed = follow(source, root.absolute(), shares)
     if followed.calls:

@@ -12,7 +12,7 @@ from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
 from ifgen.reading import storage
 
 if TYPE_CHECKING:
-    from ifgen.reading.cmake.calls import Call
+    from ifgen.reading.cmake.interpreter import Call
 
 GENERATE: Final = "rosidl_generate_interfaces"
 

@@ -70,7 +70,7 @@ def run(programs: Sequence[tuple[str, Sequence[str]]], transport: Literal["local
     Returns the worst of their exit codes.
     """
     command = [sys.executable, "-m", "ifgen", "run", "--transport", transport]
-    with tempfile.TemporaryDirectory(prefix="ifgen-run-") as folder, _meeting_place(transport) as place:
+    with tempfile.TemporaryDirectory(prefix="ifgen-run-") as folder, meeting_place(transport) as place:
         note = Path(folder) / "dismissed"
         environment = {**os.environ, **place, NOTE: str(note)}
         with _signals() as next_signal:
@@ -83,7 +83,7 @@ def run(programs: Sequence[tuple[str, Sequence[str]]], transport: Literal["local
 
 
 @contextmanager
-def _meeting_place(transport: Literal["local", "rclpy"]) -> Generator[dict[str, str]]:
+def meeting_place(transport: Literal["local", "rclpy"]) -> Generator[dict[str, str]]:
     """Keep a router as long as programs run that cannot find each other otherwise; yields their variables."""
     chosen = any(os.environ.get(name) for name in _CHOOSE_PLACE)
     if transport == "rclpy" or chosen or _has_unix_sockets():

@@ -152,13 +152,11 @@ def set_aside(path: Path, directory: Path) -> Path:
     return directory / EDITED / path.relative_to(directory)
 
 
-def left_behind(packages: Iterable[OutputPackage], directory: Path) -> tuple[Path, ...]:
-    """Files that became the user's in an earlier run, and that these packages have no use for any more."""
-    found: list[Path] = []
-    for package in packages:
-        folder = directory / package.name
-        found += (folder / name for name in _old_manifest(folder).yours if name not in package.once)
-    return tuple(sorted(path for path in found if path.is_file()))
+def left_behind(package: OutputPackage, directory: Path) -> list[Path]:
+    """Files that became the user's in an earlier run, and that a package has no use for any more."""
+    folder = directory / package.name
+    names = (name for name in _old_manifest(folder).yours if name not in package.once)
+    return [path for name in names if (path := folder / name).is_file()]
 
 
 def is_intact(record: Manifest, folder: Path, directory: Path) -> bool:

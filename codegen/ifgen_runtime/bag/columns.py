@@ -11,8 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ifgen_runtime.bag.errors import BagError
-from ifgen_runtime.field_types import Basic, Field, Text, fields_of
-from ifgen_runtime.type_description import type_name
+from ifgen_runtime.field_types import Basic, Field, Text, fields_of, type_name
 
 _PATH: Final = re.compile(r"[a-zA-Z]\w*(\[\d+\])*(\.[a-zA-Z]\w*(\[\d+\])*)*")
 _STEP: Final = re.compile(r"(?P<name>\w+)|\[(?P<index>\d+)\]")

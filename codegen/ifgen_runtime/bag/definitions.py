@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import Any, Final
 
 from ifgen_runtime.bag.topics import Definition
-from ifgen_runtime.field_types import Basic, Field, Text, fields_of
-from ifgen_runtime.type_description import sources, type_hash, type_name
+from ifgen_runtime.field_types import Basic, Field, Text, fields_of, type_name
+from ifgen_runtime.type_description import sources, type_hash
 
 _SEPARATOR: Final = re.compile(r"^={80}\n(?:MSG|IDL): (\S+)[ \t]*\n", re.MULTILINE)
 _FIELD: Final = re.compile(r"(?P<type>[\w/\[\]<=]+)\s+(?P<name>\w+)\s*(?P<rest>.*)")

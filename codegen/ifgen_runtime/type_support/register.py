@@ -15,7 +15,8 @@ from ifgen_runtime.codec import serialize
 from ifgen_runtime.codec.choice import attached
 from ifgen_runtime.codec.decoding import decode_any
 from ifgen_runtime.errors import DeserializationError
-from ifgen_runtime.type_description import describe, sources, type_name
+from ifgen_runtime.field_types import type_name
+from ifgen_runtime.type_description import describe, sources
 from ifgen_runtime.type_support import tables
 from ifgen_runtime.type_support.binding import native
 from ifgen_runtime.type_support.descriptions import Description, split

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.action.graph import actions
+from ifgen.signals import Interrupt, defer_interrupt
+
 from ifgen_tools.action.output import Json, Output, Text
 from ifgen_tools.calling import (
     answer,
@@ -15,9 +16,9 @@ from ifgen_tools.calling import (
     wait_for_server,
 )
 from ifgen_tools.errors import ToolError
-from ifgen_tools.interruption import Interruption, noted
+from ifgen_tools.graph.reading import actions
 from ifgen_tools.session import open_session
-from ifgen_tools.texts.filling import fill, read_yaml
+from ifgen_tools.texts.set_fields import read_yaml, set_fields
 
 if TYPE_CHECKING:
     from ifgen_tools.session import Session, TransportChoice
@@ -51,22 +52,21 @@ def send_goal(
         name = session.node.resolve_topic_name(name)
         known = known_class(type_name, "action")
         if isinstance(known, type):
-            fill(known.Goal(), given)  # a mistake in it is said before anybody is waited for
+            set_fields(known.Goal(), given)  # a mistake in it is said before anybody is waited for
         output = Json() if as_json else Text()
         wait_for_server(session, "action", name, type_name, lambda: actions(session.node))
         cls = class_on_the_wire(session, "action", name, known)
         goal = cls.Goal()
         now = session.node.get_clock().now().to_msg()
-        for stamp in fill(goal, given):
+        for stamp in set_fields(goal, given):
             stamp(now)
-        with noted() as interruption:
-            sending = _Sending(session, name, cls, output, interruption)
+        with defer_interrupt() as interrupt:
+            sending = _Sending(session, name, cls, output, interrupt)
             try:
                 is_accepted = sending.run(goal, feedback)
             finally:
                 sending.end()
-        if interruption:
-            raise interruption.stop()
+        interrupt.raise_again()
     return 0 if is_accepted else 1
 
 
@@ -74,21 +74,21 @@ class _Sending:
     """A goal on its way."""
 
     def __init__(
-        self, session: Session, name: str, cls: type[Any], output: Output, interruption: Interruption
+        self, session: Session, name: str, cls: type[Any], output: Output, interrupt: Interrupt
     ) -> None:
         from rclpy.action import ActionClient
 
         self._session = session
         self._what = f"action {name!r}"
         self._output = output
-        self._interruption = interruption
+        self._interrupt = interrupt
         self._client = ActionClient(session.node, cls, name)
 
     def run(self, goal: Any, feedback: bool) -> bool:
         """Send the goal, and stay until it has ended. Returns False if the server rejects it."""
         ready, output = self._client.server_is_ready, self._output
-        self._session.wait_for(lambda: ready() or bool(self._interruption))
-        if self._interruption:
+        self._session.wait_for(lambda: ready() or bool(self._interrupt.number))
+        if self._interrupt.number:
             return False
         output.sending(goal)
         listener = (lambda message: output.feedback(message.feedback)) if feedback else None
@@ -99,7 +99,7 @@ class _Sending:
             return False
         output.accepted(bytes(handle.goal_id.uuid).hex())
         result = handle.get_result_async()
-        ended = answer(self._session, result, ready, self._what, lambda: bool(self._interruption))
+        ended = answer(self._session, result, ready, self._what, lambda: bool(self._interrupt.number))
         if ended is None:
             self._cancel(handle)
             ended = answer(self._session, result, ready, self._what)

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ifgen_tools.named import Named, named, of_type, pick, print_named
-from ifgen_tools.names import full_name
+from ifgen.nodl.model import Category
+
+from ifgen_tools.graph.lookup import of_type, pick, print_named
+from ifgen_tools.graph.reading import Named, View, actions
 from ifgen_tools.session import open_session
 
 if TYPE_CHECKING:
     from rclpy.node import Node
 
     from ifgen_tools.session import TransportChoice
-
-# Late imports: rclpy is found once the transport has been chosen.
 
 
 def list_actions(
@@ -75,12 +74,10 @@ def action_info(
     """Print who serves an action, and who has a client of it. Raises ToolError if there is no such action."""
     with open_session(transport) as session:
         session.discover(spin_time)
-        import rclpy.action
-
-        node = session.node
-        found = pick_action(node, name)
-        clients = _nodes_with(found.name, node, rclpy.action.get_action_client_names_and_types_by_node)
-        servers = _nodes_with(found.name, node, rclpy.action.get_action_server_names_and_types_by_node)
+        found = pick_action(session.node, name)
+        view = session.graph()
+    clients = _nodes(view, found.name, Category.ACTION_CLIENT)
+    servers = _nodes(view, found.name, Category.ACTION_SERVER)
     if as_json:
         lists = {"clients": list(map(asdict, clients)), "servers": list(map(asdict, servers))}
         print(json.dumps({"name": found.name, **lists}, indent=2))
@@ -92,27 +89,14 @@ def action_info(
             print(f"    {each.name} [{', '.join(each.types)}]" if show_types else f"    {each.name}")
 
 
-def actions(node: Node) -> list[Named]:
-    """The actions that a node sees, sorted by name."""
-    import rclpy.action
-
-    return named(rclpy.action.get_action_names_and_types(node))
-
-
 def pick_action(node: Node, name: str) -> Named:
     """The action of this name, which may lack the `/` in front. Raises ToolError."""
     return pick(actions(node), name, "action")
 
 
-def _nodes_with(action: str, node: Node, ask: Callable[[Node, str, str], Any]) -> list[Named]:
-    """The nodes whose servers or clients, as `ask` tells, include this action; with the types there."""
-    from rclpy.node import NodeNameNonExistentError
-
-    found: list[Named] = []
-    for name, namespace in node.get_node_names_and_namespaces():
-        try:
-            known = ask(node, name, namespace)
-        except NodeNameNonExistentError:  # has gone since
-            continue
-        found += (Named(full_name(name, namespace), list(types)) for each, types in known if each == action)
-    return sorted(found, key=lambda each: each.name)
+def _nodes(view: View, action: str, category: Category) -> list[Named]:
+    """The nodes that have an action, or clients of it, with the types there."""
+    types: dict[str, list[str]] = {}
+    for end in view.ends(action, category):
+        types.setdefault(end.node, []).append(end.type_name)
+    return [Named(node, of_node) for node, of_node in types.items()]

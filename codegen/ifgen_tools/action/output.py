@@ -1,15 +1,14 @@
-"""What `ifgen action send_goal` prints while a goal is on its way."""
+"""The lines that `ifgen action send_goal` prints while a goal is on its way."""
 
 from __future__ import annotations
 
 from typing import Any, Protocol
 
-from ifgen_tools.texts.json_text import as_json
-from ifgen_tools.texts.yaml_text import as_yaml
+from ifgen_tools.texts.formats import as_json, as_yaml
 
 
 class Output(Protocol):
-    """What happens to a goal, in this order."""
+    """The events of a goal, in this order."""
 
     def sending(self, goal: Any) -> None:
         """It is sent to a server."""

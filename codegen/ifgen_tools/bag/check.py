@@ -59,7 +59,7 @@ def _unreadable(bag: Bag) -> tuple[Counter[str], dict[str, str]]:
 
 
 def _differences(definition: Definition) -> Iterator[str]:
-    """What differs between the definition in a bag and the one that is installed, if there is one."""
+    """The differences between the definition in a bag and the one that is installed, if there is one."""
     # Late: a bag whose definitions are those that are installed needs no toolkit.
     from ifgen.evolution.compare import between
     from ifgen.evolution.edits import Category

@@ -1,4 +1,4 @@
-"""What users choose on the command line, as the commands want it."""
+"""The choices of users on the command line, as the commands want them."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ def bag() -> None:
     type=click.IntRange(min=0),
     default=0,
     metavar="BYTES",
-    help="Begin a new file after so many bytes.",
+    help="Begin a new file after this number of bytes.",
 )
 @click.option(
     "-d",
@@ -123,7 +123,7 @@ def bag() -> None:
     "--max-bag-files",
     type=click.IntRange(min=0),
     default=0,
-    help="Keep so many files, and delete the oldest.",
+    help="Keep this number of files, and delete the oldest.",
 )
 @click.option(
     "--compression-mode",

@@ -18,12 +18,12 @@ from ifgen.evolution.adapting.versions import TwoVersions
 from ifgen_runtime.codec import deserialize, serialize
 
 _BUILTINS: Final = {name: getattr(builtins, name) for name in ("bytes", "float")}
-"""What the expressions of conversions call."""
+"""The functions that the expressions of conversions call."""
 
 
 @dataclass(frozen=True, slots=True)
 class Loss:
-    """What a conversion loses or leaves open. `place` is `pkg/msg/Name.field`."""
+    """The losses of a conversion, and what it leaves open. `place` is `pkg/msg/Name.field`."""
 
     place: str
     reason: str

@@ -32,7 +32,7 @@ class Passage:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What to copy: topics, received from `start` to before `end` [ns]; None is no limit."""
+    """The part to copy: topics, received from `start` to before `end` [ns]; None is no limit."""
 
     choice: Selection
     start: int | None = None

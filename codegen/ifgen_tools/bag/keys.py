@@ -1,16 +1,12 @@
-"""What whoever sits at the terminal does while a command runs: single keys, and Ctrl-C."""
+"""The keys of a terminal, one at a time, while a command runs."""
 
 from __future__ import annotations
 
 import os
 import select
-import signal
 import sys
-import threading
 from collections.abc import Callable, Generator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
-from types import FrameType
 from typing import Final
 
 SPACE, RIGHT, UP, DOWN = " ", "\x1b[C", "\x1b[A", "\x1b[B"
@@ -44,49 +40,6 @@ class Keyboard:
             if key:
                 self._actions[key][1]()
             text = text[len(key) or 1 :]
-
-
-@dataclass(slots=True)
-class Stop:
-    """Whether somebody wants a command to end: the number of the signal, 0 while nobody does."""
-
-    number: int = 0
-    is_impatient: bool = False
-    """Whether a second signal came: what is not urgent is left out."""
-
-    def raise_again(self) -> None:
-        """End as the signal would have ended the command."""
-        if self.number:
-            from ifgen.writing.interruption import Terminated  # late, as above
-
-            raise KeyboardInterrupt if self.number == signal.SIGINT else Terminated
-
-
-@contextmanager
-def stoppable() -> Generator[Stop]:
-    """Note Ctrl-C and SIGTERM instead of raising them: a write that is cut short leaves half a record.
-
-    A second one is noted as well. A third one is raised at once.
-    """
-    stop = Stop()
-    if threading.current_thread() is not threading.main_thread():
-        yield stop
-        return
-
-    def note(number: int, _: FrameType | None) -> None:
-        if stop.is_impatient:
-            raise KeyboardInterrupt
-        if stop.number:
-            stop.is_impatient = True
-        else:
-            stop.number = number
-
-    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield stop
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler or signal.SIG_DFL)
 
 
 @contextmanager

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What becomes of the messages of a definition: how, and what is lost."""
+    """The way in which messages of a definition are converted, and what is lost."""
 
     how: str
     target: Definition | None = None

@@ -61,7 +61,7 @@ def adapted_request(offers: Sequence[QoSProfile], depth: int = _DEPTH) -> tuple[
 
 
 def adapted_offer(recorded: Sequence[OfferedQoS]) -> tuple[QoSProfile, bool]:
-    """What to offer for publishers that were recorded, and whether these disagree.
+    """The profile to offer for publishers that were recorded, and whether these disagree.
 
     If they do, or nothing is known, it is the default.
     """

@@ -121,7 +121,7 @@ def proto(type_: str, no_quotes: bool, transport: Any, as_json: bool) -> None:
     That is a message, the request of a service, or the goal of an action.
     """
     from ifgen_tools.interface.proto import prototype
-    from ifgen_tools.texts.yaml_text import Style, as_yaml, plain
+    from ifgen_tools.texts.formats import Style, as_yaml, plain
 
     message = prototype(type_, transport)
     if as_json:

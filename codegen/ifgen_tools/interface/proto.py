@@ -1,4 +1,4 @@
-"""What `interface proto` is about: a message with the default values of its type."""
+"""The subject of `interface proto`: a message with the default values of its type."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `interface show` prints: a definition, and below each field the definition of its message."""
+"""The text that `interface show` prints: a definition, and below each field the definition of its message."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _AS_TEXT = {
     ".yaml": "`type: str` in the `param` passes",
     ".yml": "`type: str` in the `param` passes",
 }
-"""What passes a text as it is, as launch_ros says it of Python, by the kind of launch file."""
+"""The form that passes a text as it is, as launch_ros says it of Python, by the kind of launch file."""
 
 
 class LaunchError(ToolError):

@@ -8,8 +8,8 @@ from typing import Any
 import click
 
 from ifgen_tools import completion, options
+from ifgen_tools.graph.lookup import hidden_nodes_option
 from ifgen_tools.group import ToolGroup
-from ifgen_tools.nodes import hidden_nodes_option
 
 # Late imports: each verb loads what it needs.
 

@@ -6,7 +6,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen_tools.errors import ToolError
-from ifgen_tools.nodes import find_node, node_names
+from ifgen_tools.graph.lookup import find_node
+from ifgen_tools.graph.reading import node_names
 
 if TYPE_CHECKING:
     from lifecycle_msgs.msg import State, Transition, TransitionDescription

@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ifgen_tools.nodes import find_node
+from ifgen_tools.graph.lookup import find_node
 from ifgen_tools.param.remote import TYPES, RemoteParameters
 from ifgen_tools.session import TransportChoice, open_session
 

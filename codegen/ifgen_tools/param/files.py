@@ -11,7 +11,7 @@ from ifgen_runtime import parameter_yaml
 from ifgen_runtime.parameter_scalars import Value
 
 from ifgen_tools.errors import ToolError
-from ifgen_tools.nodes import find_node
+from ifgen_tools.graph.lookup import find_node
 from ifgen_tools.param.remote import RemoteParameters, SetResult
 from ifgen_tools.param.values import finish, json_value, parameter_of, value_of
 from ifgen_tools.session import TransportChoice, open_session

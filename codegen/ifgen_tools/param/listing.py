@@ -11,7 +11,8 @@ from typing import Any
 import click
 
 from ifgen_tools.errors import ToolError
-from ifgen_tools.nodes import find_node, node_names
+from ifgen_tools.graph.lookup import find_node
+from ifgen_tools.graph.reading import node_names
 from ifgen_tools.param.remote import TYPES, RemoteParameters
 from ifgen_tools.session import Session, TransportChoice, open_session
 

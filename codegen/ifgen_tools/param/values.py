@@ -13,10 +13,10 @@ from ifgen_runtime import parameter_yaml
 from ifgen_runtime.parameter_scalars import Value
 
 from ifgen_tools.errors import ToolError
-from ifgen_tools.nodes import find_node
+from ifgen_tools.graph.lookup import find_node
 from ifgen_tools.param.remote import TYPES, RemoteParameters, SetResult
 from ifgen_tools.session import TransportChoice, open_session
-from ifgen_tools.texts.filling import shown, text_problem
+from ifgen_tools.texts.set_fields import shown, text_problem
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter, ParameterValue
@@ -153,7 +153,7 @@ def _print(result: SetResult, success: str, failure: str) -> None:
 
 
 def _label(type_: int) -> str:
-    """What ROS writes before a value: `Integer value is:`, `Double values are:`."""
+    """The words that ROS writes before a value: `Integer value is:`, `Double values are:`."""
     kind, *is_array = TYPES[type_].capitalize().split()
     return f"{kind} values are:" if is_array else f"{kind} value is:"
 
@@ -213,7 +213,7 @@ _ELEMENTS: Final[dict[int, type]] = {6: bool, 7: int, 8: float, 9: str, 5: bytes
 
 
 def _advice(remote: RemoteParameters, parameters: Sequence[Any], results: Sequence[SetResult]) -> list[str]:
-    """What to write where a value has another type than its parameter."""
+    """Advice where a value has another type than its parameter."""
     known = remote.names()
     lines: list[str] = []
     for parameter, result in zip(parameters, results, strict=True):

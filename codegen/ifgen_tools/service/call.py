@@ -13,10 +13,10 @@ from ifgen_tools.calling import (
     values_or_stdin,
     wait_for_server,
 )
-from ifgen_tools.service.graph import services
+from ifgen_tools.graph.reading import services
 from ifgen_tools.session import open_session
-from ifgen_tools.texts.filling import SetStamp, fill, read_yaml
-from ifgen_tools.texts.json_text import as_json
+from ifgen_tools.texts.formats import as_json
+from ifgen_tools.texts.set_fields import SetStamp, read_yaml, set_fields
 
 if TYPE_CHECKING:
     from ifgen_tools.session import Session, TransportChoice
@@ -39,11 +39,11 @@ def call(
         name = session.node.resolve_service_name(name)
         known = known_class(type_name, "service")
         if isinstance(known, type):
-            fill(known.Request(), given)  # a mistake in it is said before anybody is waited for
+            set_fields(known.Request(), given)  # a mistake in it is said before anybody is waited for
         wait_for_server(session, "service", name, type_name, lambda: services(session.node))
         cls = class_on_the_wire(session, "service", name, known)
         request = cls.Request()
-        _Caller(session, name, cls, in_json).call(request, fill(request, given), rate)
+        _Caller(session, name, cls, in_json).call(request, set_fields(request, given), rate)
 
 
 class _Caller:

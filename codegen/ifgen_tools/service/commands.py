@@ -135,7 +135,7 @@ def echo(
     client in rclpy. There are no values in the events while the state is METADATA.
     """
     from ifgen_tools.service.echo import echo
-    from ifgen_tools.texts.yaml_text import Style
+    from ifgen_tools.texts.formats import Style
 
     if as_csv and as_json:
         raise click.UsageError("--csv and --json exclude each other")

@@ -6,11 +6,10 @@ import sys
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen_tools.calling import class_on_the_wire, full_type_name, known_class
-from ifgen_tools.service.graph import pick_service, services
+from ifgen_tools.graph.reading import services
+from ifgen_tools.service.graph import pick_service
 from ifgen_tools.session import open_session
-from ifgen_tools.texts.csv_text import as_csv
-from ifgen_tools.texts.json_text import as_json
-from ifgen_tools.texts.yaml_text import Style, plain, written
+from ifgen_tools.texts.formats import Style, as_csv, as_json, plain, written
 
 if TYPE_CHECKING:
     from ifgen_tools.session import Session, TransportChoice

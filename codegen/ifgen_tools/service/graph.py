@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from ifgen_tools.named import Named, named, of_type, pick, print_named
-from ifgen_tools.names import full_name, is_hidden
+from ifgen.nodl.model import Category
+
+from ifgen_tools.graph.lookup import of_type, pick, print_named
+from ifgen_tools.graph.reading import Named, View, services
 from ifgen_tools.session import open_session
 
 if TYPE_CHECKING:
@@ -80,8 +81,9 @@ def service_info(
         node = session.node
         found = pick_service(node, name)
         clients, servers = node.count_clients(found.name), node.count_services(found.name)
-        calling = _nodes_with(found.name, node, node.get_client_names_and_types_by_node)
-        serving = _nodes_with(found.name, node, node.get_service_names_and_types_by_node)
+        view = session.graph()
+    calling = _nodes(view, found.name, Category.SERVICE_CLIENT)
+    serving = _nodes(view, found.name, Category.SERVICE_SERVER)
     if as_json:
         counts = {"clients": clients, "servers": servers, "client_nodes": calling, "server_nodes": serving}
         print(json.dumps({"name": found.name, "types": found.types, **counts}, indent=2))
@@ -93,28 +95,11 @@ def service_info(
             print(f"    {each}")
 
 
-def services(node: Node, include_hidden: bool = True) -> list[Named]:
-    """The services that a node sees, sorted by name, without its own."""
-    own = f"{full_name(node.get_name(), node.get_namespace())}/"
-    found = named(node.get_service_names_and_types())
-    return [s for s in found if not s.name.startswith(own) and (include_hidden or not is_hidden(s.name))]
-
-
 def pick_service(node: Node, name: str) -> Named:
     """The service of this name, which may lack the `/` in front. Raises ToolError."""
     return pick(services(node), name, "service")
 
 
-def _nodes_with(service: str, node: Node, ask: Callable[[str, str], Any]) -> list[str]:
-    """The nodes whose services or clients, as `ask` tells, include this one."""
-    from rclpy.node import NodeNameNonExistentError  # found once the transport has been chosen
-
-    found: list[str] = []
-    for name, namespace in node.get_node_names_and_namespaces():
-        try:
-            known = ask(name, namespace)
-        except NodeNameNonExistentError:  # has gone since
-            continue
-        if any(service == each for each, _ in known):
-            found.append(full_name(name, namespace))
-    return sorted(set(found))
+def _nodes(view: View, service: str, category: Category) -> list[str]:
+    """The nodes that have a service, or clients of it, each once."""
+    return list(dict.fromkeys(end.node for end in view.ends(service, category)))

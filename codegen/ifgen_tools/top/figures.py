@@ -13,7 +13,7 @@ _SECOND = 1e9  # [ns]
 
 @dataclass(slots=True)
 class Figures:
-    """What the processes' last reports say, together with those before."""
+    """The figures from the processes' last reports and those before."""
 
     rates: dict[str, float] = field(default_factory=dict)
     """Messages a second by topic, of the publishers that are known."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from ifgen_tools import discovery
-from ifgen_tools.names import is_hidden
+from ifgen_tools.graph.reading import is_hidden
 from ifgen_tools.top import parameters, reports
 from ifgen_tools.top.figures import Figures, compare
 from ifgen_tools.top.graph import Graph, look
@@ -54,7 +54,7 @@ class Gatherer:
         self._listener.update(self._wanted if self._listens else [], self._graph.topics)
 
     def tap(self, topic: str) -> Tap | None:
-        """What is heard of a topic that is listened to."""
+        """The rate and the messages of a topic that is listened to."""
         return self._listener.taps.get(topic)
 
     def spin(self, seconds: float) -> None:
@@ -70,7 +70,7 @@ class Gatherer:
         self._listener.close()
 
     def step(self) -> Snapshot:
-        """What there is now; rates are those since the last step."""
+        """The system as it is now; rates are those since the last step."""
         node = self._session.node
         graph = look(node, include_hidden=self._include_hidden)
         earlier = self._reports

@@ -1,4 +1,4 @@
-"""What rclpy's graph says of the other nodes: the same on every transport."""
+"""The other nodes in rclpy's graph: the same on every transport."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
-from ifgen_tools.names import full_name, is_hidden
+from ifgen_tools.graph.reading import full_name, is_hidden
 from ifgen_tools.top.snapshot import ServiceRow
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""What processes of the local transport tell of themselves, read from JSON that anybody may have sent."""
+"""The reports of processes of the local transport, read from JSON that anybody may have sent."""
 
 from __future__ import annotations
 

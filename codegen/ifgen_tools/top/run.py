@@ -8,7 +8,7 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
-from ifgen.writing.interruption import Terminated
+from ifgen.signals import Terminated
 
 from ifgen_tools.session import open_session
 

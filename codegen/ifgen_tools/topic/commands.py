@@ -3,12 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Final
 
 import click
 
 from ifgen_tools import completion, options, qos
 from ifgen_tools.group import ToolGroup
+from ifgen_tools.topic.options import (
+    EchoOptions,
+    FindOptions,
+    HzOptions,
+    InfoOptions,
+    ListOptions,
+    PubOptions,
+    RateOptions,
+    TopicOptions,
+)
+from ifgen_tools.verbs import takes
 
 # Late imports: each verb loads what it needs.
 
@@ -40,11 +51,12 @@ def topic() -> None:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-def list_(**chosen: Any) -> int:
+@takes(ListOptions)
+def list_(chosen: ListOptions) -> int:
     """Print the names of all topics."""
-    from ifgen_tools.topic.looking import list_topics
+    from ifgen_tools.topic.list import list_topics
 
-    return list_topics(**chosen)
+    return list_topics(chosen)
 
 
 @topic.command(epilog="Example: ifgen topic info -v /chatter")
@@ -53,11 +65,12 @@ def list_(**chosen: Any) -> int:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-def info(**chosen: Any) -> int:
+@takes(InfoOptions)
+def info(chosen: InfoOptions) -> int:
     """Print the type of a topic, and who publishes and subscribes."""
-    from ifgen_tools.topic import looking
+    from ifgen_tools.topic.list import info as run
 
-    return looking.info(**chosen)
+    return run(chosen)
 
 
 @topic.command("type", epilog="Example: ifgen topic type /chatter")
@@ -65,11 +78,12 @@ def info(**chosen: Any) -> int:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-def type_(**chosen: Any) -> int:
+@takes(TopicOptions)
+def type_(chosen: TopicOptions) -> int:
     """Print the type of a topic."""
-    from ifgen_tools.topic import looking
+    from ifgen_tools.topic.list import type_ as run
 
-    return looking.type_(**chosen)
+    return run(chosen)
 
 
 @topic.command(epilog="Example: ifgen topic find std_msgs/msg/String")
@@ -79,11 +93,12 @@ def type_(**chosen: Any) -> int:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-def find(**chosen: Any) -> int:
+@takes(FindOptions)
+def find(chosen: FindOptions) -> int:
     """Print the topics of a type."""
-    from ifgen_tools.topic import looking
+    from ifgen_tools.topic.list import find as run
 
-    return looking.find(**chosen)
+    return run(chosen)
 
 
 @topic.command(epilog="Example: ifgen topic echo /imu --field linear_acceleration --once")
@@ -127,36 +142,16 @@ def find(**chosen: Any) -> int:
 @qos.qos_options
 @options.use_sim_time_option
 @options.graph_options
-def echo(
-    csv: bool,
-    as_json: bool,
-    raw: bool,
-    full_length: bool,
-    truncate_length: int,
-    no_arr: bool,
-    no_str: bool,
-    flow_style: bool,
-    fields: tuple[str, ...],
-    **chosen: Any,
-) -> int:
+@takes(EchoOptions)
+def echo(chosen: EchoOptions) -> int:
     """Print the messages of a topic.
 
     TYPE is that of the topic if it is left out. Without --qos-... options, QoS fits all publishers that are
     there.
     """
-    from ifgen_tools.texts.yaml_text import Style
-    from ifgen_tools.topic.echoing import echo as run
+    from ifgen_tools.topic.echo import echo as run
 
-    forms = [form for form, is_chosen in (("csv", csv), ("json", as_json), ("raw", raw)) if is_chosen]
-    if len(forms) > 1:
-        raise click.UsageError(f"--{forms[0]} and --{forms[1]} exclude each other: leave out one")
-    if len(fields) > 1:
-        raise click.UsageError(
-            f"--field can be given once, not {len(fields)} times: name a message with both"
-        )
-    style = Style(None if full_length else truncate_length, no_arr, no_str, flow_style)
-    field = fields[0] if fields else None
-    return run(form=forms[0] if forms else "yaml", style=style, field=field, **chosen)
+    return run(chosen)
 
 
 @topic.command(epilog="Example: ifgen topic pub --once /cmd_vel geometry_msgs/msg/Twist '{linear: {x: 0.5}}'")
@@ -198,15 +193,16 @@ def echo(
 @qos.qos_options
 @options.use_sim_time_option
 @options.graph_options
-def pub(**chosen: Any) -> int:
+@takes(PubOptions)
+def pub(chosen: PubOptions) -> int:
     """Publish a message on a topic, again and again.
 
     VALUES are YAML. Fields that they do not mention have their default values. `auto` for a header and `now`
     for a time stand for the time of sending.
     """
-    from ifgen_tools.topic.publishing import pub as run
+    from ifgen_tools.topic.pub import pub as run
 
-    return run(**chosen)
+    return run(chosen)
 
 
 @topic.command(epilog="Example: ifgen topic hz /imu /scan --window 100")
@@ -222,11 +218,12 @@ def pub(**chosen: Any) -> int:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-def hz(**chosen: Any) -> int:
+@takes(HzOptions)
+def hz(chosen: HzOptions) -> int:
     """Print the rates of topics, every second."""
-    from ifgen_tools.topic import rates
+    from ifgen_tools.topic.rates import hz as run
 
-    return rates.hz(**chosen)
+    return run(chosen)
 
 
 @topic.command(epilog="Example: ifgen topic bw /camera/image")
@@ -235,11 +232,12 @@ def hz(**chosen: Any) -> int:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-def bw(**chosen: Any) -> int:
+@takes(RateOptions)
+def bw(chosen: RateOptions) -> int:
     """Print the bandwidth of a topic, every second."""
-    from ifgen_tools.topic import rates
+    from ifgen_tools.topic.rates import bw as run
 
-    return rates.bw(**chosen)
+    return run(chosen)
 
 
 @topic.command(epilog="Example: ifgen topic delay /imu")
@@ -248,8 +246,9 @@ def bw(**chosen: Any) -> int:
 @options.json_option
 @options.use_sim_time_option
 @options.graph_options
-def delay(**chosen: Any) -> int:
+@takes(RateOptions)
+def delay(chosen: RateOptions) -> int:
     """Print how old messages are by their headers, every second."""
-    from ifgen_tools.topic import rates
+    from ifgen_tools.topic.rates import delay as run
 
-    return rates.delay(**chosen)
+    return run(chosen)

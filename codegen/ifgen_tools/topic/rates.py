@@ -12,11 +12,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final
 
+from ifgen_runtime.field_types import fields_of, type_name
+
 from ifgen_tools.errors import ToolError
-from ifgen_tools.expressions import condition
+from ifgen_tools.qos import QosChoice
 from ifgen_tools.session import Session, open_session
-from ifgen_tools.texts.field_types import field_types, type_name
-from ifgen_tools.topic import listening
+from ifgen_tools.texts.select import condition
+from ifgen_tools.topic import topics
+from ifgen_tools.topic.options import HzOptions, RateOptions
 
 _SECOND: Final = 1_000_000_000  # [ns]
 
@@ -68,40 +71,33 @@ class Rate:
         return spread([interval / _SECOND for interval in self._intervals])
 
 
-def hz(
-    *,
-    topic_names: tuple[str, ...],
-    window: int,
-    filter_expression: str | None,
-    wall_time: bool,
-    transport: Any,
-    spin_time: float | None,
-    use_sim_time: bool,
-    as_json: bool,
-) -> int:
+def hz(chosen: HzOptions) -> int:
     """Print rates every second."""
-    wanted = condition(filter_expression)
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        now: Callable[[], int] = time.time_ns if wall_time else session.now
+    wanted = condition(chosen.filter_expression)
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        now: Callable[[], int] = time.time_ns if chosen.wall_time else session.now
         rates: dict[str, Rate] = {}
 
         def hear(rate: Rate, message: Any) -> None:
-            if filter_expression and not wanted(message):
+            if chosen.filter_expression and not wanted(message):
                 return
             moment = now()
             if moment and not rate.add(moment):
                 print("time has reset, resetting counters", flush=True)
 
-        found_names = [listening.find_topic(session, name, spin_time) for name in topic_names]
-        for name in dict.fromkeys(found_names):
-            rate = rates[name] = Rate(window)
-            cls = listening.wait_for_topic(session, name)
-            listening.listen(session, name, cls, partial(hear, rate), {}, raw=not filter_expression)
+        names = [topics.find_topic(session, name, chosen.spin_time) for name in chosen.topic_names]
+        for name in dict.fromkeys(names):
+            rate = rates[name] = Rate(chosen.window)
+            cls = topics.wait_for_topic(session, name)
+            topics.listen(
+                session, name, cls, partial(hear, rate), QosChoice(), raw=not chosen.filter_expression
+            )
         while True:
             session.turn()
             told = {name: found for name, rate in rates.items() if (found := rate.take()) is not None}
             for name, found in told.items():
-                print(_rate_text(name if len(rates) > 1 or as_json else "", found, as_json), flush=True)
+                shown = name if len(rates) > 1 or chosen.as_json else ""
+                print(_rate_text(shown, found, chosen.as_json), flush=True)
 
 
 def _rate_text(topic: str, found: Spread, as_json: bool) -> str:
@@ -129,19 +125,11 @@ class _Arrival:
     size: int  # [bytes]
 
 
-def bw(
-    *,
-    topic_name: str,
-    window: int,
-    transport: Any,
-    spin_time: float | None,
-    use_sim_time: bool,
-    as_json: bool,
-) -> int:
+def bw(chosen: RateOptions) -> int:
     """Print the bandwidth every second."""
-    arrivals: deque[_Arrival] = deque(maxlen=window)
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        topic = listening.find_topic(session, topic_name, spin_time)
+    arrivals: deque[_Arrival] = deque(maxlen=chosen.window)
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        topic = topics.find_topic(session, chosen.topic_name, chosen.spin_time)
 
         def hear(data: bytes) -> None:
             arrivals.append(_Arrival(session.now(), len(data)))
@@ -155,11 +143,11 @@ def bw(
                 arrivals.clear()
                 return
             sizes = [arrival.size for arrival in arrivals]
-            print(_bandwidth_text(topic, sizes, (now - arrivals[0].at) / _SECOND, as_json), flush=True)
+            print(_bandwidth_text(topic, sizes, (now - arrivals[0].at) / _SECOND, chosen.as_json), flush=True)
 
-        cls = listening.wait_for_topic(session, topic)
-        listening.listen(session, topic, cls, hear, {}, raw=True)
-        if not as_json:
+        cls = topics.wait_for_topic(session, topic)
+        topics.listen(session, topic, cls, hear, QosChoice(), raw=True)
+        if not chosen.as_json:
             print(f"Subscribed to [{topic}]", flush=True)
         _every_second(session, tell)
     return 0
@@ -179,20 +167,12 @@ def _bandwidth_text(topic: str, sizes: list[int], seconds: float, as_json: bool)
     return f"{shown(rate)}/s from {found.count} messages\n\tMessage size {sizes_text}"
 
 
-def delay(
-    *,
-    topic_name: str,
-    window: int,
-    transport: Any,
-    spin_time: float | None,
-    use_sim_time: bool,
-    as_json: bool,
-) -> int:
+def delay(chosen: RateOptions) -> int:
     """Print every second how old messages are by the stamps in their headers."""
-    delays: deque[float] = deque(maxlen=window)  # [s]
+    delays: deque[float] = deque(maxlen=chosen.window)  # [s]
     fresh: list[bool] = []
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        topic = listening.find_topic(session, topic_name, spin_time)
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        topic = topics.find_topic(session, chosen.topic_name, chosen.spin_time)
 
         def hear(message: Any) -> None:
             now, stamp = session.now(), message.header.stamp
@@ -204,18 +184,17 @@ def delay(
             if not delays:
                 return
             if not fresh:
-                print("no new messages", file=sys.stderr if as_json else sys.stdout, flush=True)
+                print("no new messages", file=sys.stderr if chosen.as_json else sys.stdout, flush=True)
                 return
             fresh.clear()
             found = spread(delays)
-            text = _json(topic, {"delay": found.mean}, found) if as_json else ""
+            text = _json(topic, {"delay": found.mean}, found) if chosen.as_json else ""
             print(text or f"average delay: {found.mean:.3f}\n{_deltas(found)}", flush=True)
 
-        cls = listening.wait_for_topic(session, topic)
-        header = field_types(cls).get("header")
-        if header is None or header.element != "std_msgs/msg/Header":
+        cls = topics.wait_for_topic(session, topic)
+        if not any(f.name == "header" and f.element == "std_msgs/msg/Header" for f in fields_of(cls)):
             raise ToolError(f"{type_name(cls)} has no header, so {topic!r} has no times to compare with")
-        listening.listen(session, topic, cls, hear, {})
+        topics.listen(session, topic, cls, hear, QosChoice())
         _every_second(session, tell)
     return 0
 

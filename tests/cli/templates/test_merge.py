@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen.generator_py.templates.merge import merge
+from ifgen.generator_py.templates.exports import merge
 
 TEXTS = st.lists(st.sampled_from(["a\n", "b\n", "c\n", "d\n"]), max_size=8).map("".join)
 
@@ -26,6 +26,6 @@ def test_nothing_of_either_side_gets_lost(base: str, first: str, second: str) ->
 
 def test_a_last_line_without_an_end() -> None:
     assert merge("a\nb", "a\nc", "a\nd").text == (
-        "a\n<<<<<<< ours\nc\n||||||| base\nb\n=======\nd\n>>>>>>> yours\n"
+        "a\n<<<<<<< ifgen's template now\nc\n||||||| as it was exported\nb\n=======\nd\n>>>>>>> your template\n"
     )
     assert merge("a\nb", "x\nb", "a\nb").text == "x\nb"

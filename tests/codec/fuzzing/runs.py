@@ -15,7 +15,7 @@ from multiprocessing.sharedctypes import RawArray
 from pathlib import Path
 from typing import Any
 
-from ifgen.generator_py.codec import extent
+from ifgen.generator_py.codec import plan as planning
 from ifgen_runtime.codec.choice import chosen
 
 from ...native import sanitizers
@@ -30,12 +30,12 @@ _LOW = 3
 def fuzzed_classes(folder: Path, seed: int, *, large: bool) -> Classes:
     """Bundled types, those of codec_msgs and drawn ones; with `large`, most of them as if they were large."""
     drawn = write_package(folder / "definitions", seed)
-    kept = extent.MOST_STEPS
-    extent.MOST_STEPS = _LOW if large else kept
+    kept = planning.MOST_STEPS
+    planning.MOST_STEPS = _LOW if large else kept
     try:
         return generate(folder / "generated", ROOT / "interfaces", OWN_INTERFACES, drawn)
     finally:
-        extent.MOST_STEPS = kept
+        planning.MOST_STEPS = kept
 
 
 def _run(job: int, options: argparse.Namespace, counts: Any) -> None:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen.reading import interface_list
-from ifgen.reading.cmake.builtin import SETTERS
+from ifgen.reading.cmake.commands import SETTERS
 from ifgen.reading.cmake.text import SyntaxProblem, commands
 from ifgen.reading.storage import read_source
 

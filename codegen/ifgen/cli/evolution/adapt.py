@@ -14,7 +14,7 @@ from ifgen.cli.arguments import OUTPUT_FOLDER
 from ifgen.cli.arguments import include as include_option
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError, shown_path
-from ifgen.writing.interruption import terminable
+from ifgen.signals import sigterm_raises
 
 if TYPE_CHECKING:
     from ifgen.evolution.adapting.plan import Planned
@@ -68,7 +68,7 @@ def adapt(type_: str, reference: str, downgrade: bool, output: Path | None, incl
         for artifact in artifacts
         if artifact is not None and not (folder / artifact.path).exists()
     }
-    with terminable(), transaction.locked(folder):
+    with sigterm_raises(), transaction.locked(folder):
         transaction.apply([(path, text.encode()) for path, text in texts.items()], folder)
     _report(texts, folder, planned)
     return 0

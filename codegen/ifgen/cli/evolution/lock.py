@@ -19,7 +19,7 @@ from ifgen.config.settings import Settings, settle
 from ifgen.diagnostics import InputError, Source, shown_path
 from ifgen.pipeline.values import Condition
 from ifgen.reading.storage import read_source
-from ifgen.writing.interruption import terminable
+from ifgen.signals import sigterm_raises
 
 if TYPE_CHECKING:
     from ifgen.definition.interfaces import Registry
@@ -69,7 +69,7 @@ def lock(
     if changed:
         from ifgen.writing import transaction
 
-        with terminable():
+        with sigterm_raises():
             transaction.apply([(path, text.encode())], path.parent)
     if not quiet:
         print(f"{shown_path(path)}: {changed or 'up to date'} ({_counted(registries)})")

@@ -11,7 +11,7 @@ import click
 
 from ifgen.cli import terminal
 from ifgen.cli.arguments import EXISTING_FILE
-from ifgen.writing.interruption import terminable
+from ifgen.signals import sigterm_raises
 
 if TYPE_CHECKING:
     from ifgen.running.router import Router
@@ -51,7 +51,7 @@ def router(listen: tuple[str, ...], connect: tuple[str, ...], config: Path | Non
     """
     from ifgen.running.router import open_router
 
-    with terminable():
+    with sigterm_raises():
         running = open_router(listen, connect, config)
         try:
             for line in _news(running):

@@ -172,8 +172,8 @@ def _message(type_name: str, fields: tuple[Field, ...]) -> Message:
         fields = ()
     taken = dict.fromkeys(_TAKEN, "the class itself")
     for field in fields:
-        defaults = [names.default_name(field.name)] if field.default_value is not None else []
-        for attribute in (names.attribute_name(field.name), *defaults):
+        defaults = [names.default_name(field)] if field.default_value is not None else []
+        for attribute in (names.attribute_name(field), *defaults):
             if attribute in taken:
                 other = taken[attribute]
                 raise BadDescription(

@@ -17,9 +17,9 @@ def check(fields: Iterable[Field], constants: Iterable[Constant], problems: File
     fields = tuple(fields)
     with_default = {field.name.upper() for field in fields if field.default_value is not None}
     for field in fields:
-        needed = [names.attribute_name(field.name)]
+        needed = [names.attribute_name(field)]
         if field.name.upper() in with_default:  # the class looks for a default by that name
-            needed.append(names.default_name(field.name))
+            needed.append(names.default_name(field))
         for name in needed:
             if name in taken:
                 problems.error(_taken, "field", field.name, name, field.span, taken[name])

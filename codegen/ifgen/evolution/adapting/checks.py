@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ifgen.definition.names import attribute_name
 from ifgen.definition.types import CollectionType
 from ifgen.evolution.adapting.steps import PARAMETERS, Function, Functions, Step
 from ifgen.generator_py.adapters.context import CheckText
 from ifgen.generator_py.messages.fields import is_float32
-from ifgen.generator_py.names import attribute_name
 
 
 def checked(function: Function) -> CheckText:

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 
 from ifgen.definition.interfaces import Message
+from ifgen.definition.names import attribute_name
 from ifgen.evolution.adapting.class_names import ClassNames
 from ifgen.evolution.adapting.steps import PARAMETERS, Function, Functions, Step
 from ifgen.evolution.adapting.versions import TwoVersions
@@ -17,7 +18,6 @@ from ifgen.generator_py.adapters.context import (
     RegistrationText,
     ValueText,
 )
-from ifgen.generator_py.names import attribute_name
 
 _WIDTH = 88
 

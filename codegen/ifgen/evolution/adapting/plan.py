@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ifgen.definition.interfaces import Interface, Registry
+from ifgen.definition.names import snake_case
 from ifgen.diagnostics import InputError, UsageError
 from ifgen.evolution.adapting.finding import Finder
 from ifgen.evolution.adapting.module import adapter_module, part_name
@@ -17,7 +18,6 @@ from ifgen.evolution.interfaces import versions as parts_of
 from ifgen.generator_py.adapters.context import AdapterPackage, AdapterTests
 from ifgen.generator_py.adapters.frozen import plan_frozen, short
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.names import snake_case
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from math import prod
 from typing import Final
 
 from ifgen.definition.interfaces import Field, Message, Registry
+from ifgen.definition.names import attribute_name
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -25,7 +26,6 @@ from ifgen.definition.types import (
     UnboundedWString,
 )
 from ifgen.generator_py.codec.program import NUMBERS
-from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.tests.strategies import enclosed
 
 _HEADER: Final = b"\0\1\0\0"  # CDR, little endian

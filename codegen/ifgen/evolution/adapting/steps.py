@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Final, Literal, cast
 
 from ifgen.definition.interfaces import Field, Message
+from ifgen.definition.names import attribute_name, snake_case
 from ifgen.definition.spelling import spelled
 from ifgen.definition.types import BoundedSequence, NamespacedType, UnboundedSequence
 from ifgen.evolution.adapting.conversion import Conversion, convert
 from ifgen.evolution.adapting.meaning import question
 from ifgen.evolution.adapting.versions import TwoVersions
 from ifgen.generator_py.messages.fields import default_value
-from ifgen.generator_py.names import attribute_name, snake_case
 
 Direction = Literal["upgrade", "downgrade"]
 

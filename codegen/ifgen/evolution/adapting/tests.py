@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ifgen.definition.names import attribute_name
 from ifgen.evolution.adapting.checks import check_name, checked, kept, kept_name
 from ifgen.evolution.adapting.module import part_name
 from ifgen.evolution.adapting.sample import Sample, is_too_large
@@ -11,9 +12,8 @@ from ifgen.evolution.adapting.steps import Function, Functions
 from ifgen.evolution.adapting.versions import TwoVersions
 from ifgen.evolution.edits import Versions
 from ifgen.generator_py.adapters.context import AdapterCase, AdapterTests, CheckText
-from ifgen.generator_py.adapters.strategies import OldStrategies
+from ifgen.generator_py.adapters.frozen import OldStrategies
 from ifgen.generator_py.imports import import_statement
-from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.tests.strategies import Strategies, enclosed
 
 _DIGITS = 80

@@ -12,7 +12,7 @@ from typing import Final, TypeAlias
 from ifgen import resources
 from ifgen.config.settings import Settings
 from ifgen.definition.described.texts import TextFile
-from ifgen.definition.names import module_name
+from ifgen.definition.names import snake_case
 from ifgen.diagnostics import InputError, shown_path
 from ifgen.reading import storage
 from ifgen.reading.package_files import (
@@ -106,7 +106,7 @@ class _GeneratedPackage(PackageFiles):
 
     def interface(self, folder: str, name: str) -> InterfaceFile | None:
         """The definition in a module; None if there is no such module, or no definition in it."""
-        module = self.root / folder / f"_{module_name(name)}.py"
+        module = self.root / folder / f"_{snake_case(name)}.py"
         found = _assigned(storage.text_if_there(module) or "")
         source, encoding = found.get("__source__"), found.get("__encoding__")
         if not source:

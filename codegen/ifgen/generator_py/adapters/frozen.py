@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from ifgen.definition.interfaces import Interface, Registry
+from ifgen.definition.interfaces import Interface, Message, Registry
 from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.adapters.context import FrozenModule
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.messages.facts import Facts
+from ifgen.generator_py.messages.classes import Facts
 from ifgen.generator_py.messages.package import interface_module
 from ifgen.generator_py.names import TypeName, interface_name, module_name
+from ifgen.generator_py.tests.strategies import Strategies
 
 _DIGITS = 8
 
@@ -65,3 +66,29 @@ def plan_frozen(interface: Interface, facts: FrozenFacts) -> Artifact:
 def _has_own_source(interface: Interface) -> bool:
     """Whether the source of an interface is a file of its own, and not one of many, such as a lock file."""
     return interface.source is not None and interface.source.path.stem == interface.name
+
+
+class OldStrategies(Strategies):
+    """The strategies for an old version, whose classes are frozen where they differ from today's."""
+
+    def __init__(self, registry: Registry, facts: FrozenFacts) -> None:
+        super().__init__(registry)
+        self._facts = facts
+        self.frozen: set[str] = set()
+        """The modules of the frozen classes."""
+
+    def message_class(self, type_: Message | NamespacedType) -> str:
+        """The name of a message class in the test module: `_add_two_ints_3c76ee04.AddTwoInts.Request`."""
+        module = self._facts.frozen_module(type_)
+        if module is None:
+            return super().message_class(type_)
+        self.frozen.add(module)
+        interface = interface_name(type_)
+        part = type_.name.removeprefix(interface).lstrip("_")
+        return ".".join((module, interface, *([part] if part else [])))
+
+    def strategy_name(self, message: Message) -> str:
+        """The name of the strategy for messages of this class, in the test module."""
+        module = self._facts.frozen_module(message)
+        suffix = "" if module is None else f"_{module.rpartition('_')[2]}"
+        return super().strategy_name(message) + suffix

@@ -4,20 +4,44 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ifgen.definition.interfaces import Field, Message
-from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
-from ifgen.generator_py.imports import Import
-from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass
+from ifgen.definition.interfaces import Field, Message, Registry
+from ifgen.definition.names import attribute_name, default_name
+from ifgen.definition.type_description import TypeHashes
+from ifgen.definition.types import Array, BasicType, BoundedSequence, NamespacedType, UnboundedSequence
+from ifgen.generator_py.codec.plan import Extents, plan
+from ifgen.generator_py.codec.program import NUMBERS
+from ifgen.generator_py.codec.python.text import CodecText, render
+from ifgen.generator_py.imports import IN_MESSAGES, Import, Scope
+from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass, ViewsText
 from ifgen.generator_py.messages.docstrings import constant_documentation, docstring, field_documentation
 from ifgen.generator_py.messages.enums import enums
-from ifgen.generator_py.messages.facts import Facts
 from ifgen.generator_py.messages.fields import Reference, default_literal, literal, python_field, rosidl_text
-from ifgen.generator_py.messages.scope import Scope
-from ifgen.generator_py.messages.views import views
-from ifgen.generator_py.names import attribute_name, class_reference, default_name, slot_name
+from ifgen.generator_py.names import class_reference, slot_name
 
+# The classes of `ifgen_runtime.views`, by the dtype that their names spell in lower case.
+_ARRAYS = {name.lower().removesuffix("array"): name for name in IN_MESSAGES if name.endswith("Array")}
+# What mypy and pyright refuse otherwise: an array of numpy is no array.array.
+_OTHER_TYPE = "  # type: ignore[assignment]"
+_NARROWER = "  # pyright: ignore[reportIncompatibleVariableOverride]"
 # Each expression in an f-string costs Python 3.12 and 3.13 a copy of the rest of the file.
 _MOST_F_STRINGS = 500
+
+
+class Facts:
+    """Facts about the messages in a registry, besides their definitions."""
+
+    def __init__(self, registry: Registry) -> None:
+        self.registry = registry
+        self.hashes = TypeHashes(registry)
+        self.extents = Extents(registry)
+
+    def codec(self, message: Message) -> CodecText:
+        """The codec that the module of a message has."""
+        return render(plan(message, self.extents))
+
+    def module_of(self, type_: NamespacedType) -> str:
+        """The module that other modules import a message class from."""
+        return f"{type_.package}.{type_.folder}"
 
 
 def taken_names(messages: Iterable[Message]) -> Iterator[str]:
@@ -156,3 +180,51 @@ def _dict(items: Iterable[tuple[str, str]]) -> str:
     """A dictionary of strings as ruff formats it at the level of a class body."""
     lines = [f'        "{key}": "{value}",\n' for key, value in items]
     return "{\n" + "".join(lines) + "    }" if lines else "{}"
+
+
+def views(message: Message, facts: Facts, scope: Scope, reference: Reference) -> ViewsText | None:
+    """The class for messages with views; None if the message has no sequences of numbers to view."""
+    if not facts.extents.of(message).has_sequences:
+        return None
+    name = f"_{message.name}Views"
+    return ViewsText(
+        name=name,
+        alias=f'{_views_alias(message)}: {scope("TypeAlias")} = "{name}"',
+        method=f"@{scope('classmethod')}\n        def __views__(cls) -> {name}: ...",
+        fields=tuple(_view_fields(message, facts, scope, reference)),
+    )
+
+
+def _view_fields(message: Message, facts: Facts, scope: Scope, reference: Reference) -> Iterator[str]:
+    """The fields that have another type."""
+
+    def viewed(type_: NamespacedType) -> str | None:
+        nested = facts.registry.message(type_.type_name)
+        return (
+            f"{reference(type_)}.{_views_alias(nested)}" if facts.extents.of(nested).has_sequences else None
+        )
+
+    for field in message.fields:
+        match field.type:
+            case BoundedSequence(BasicType(name), _) | UnboundedSequence(BasicType(name)):
+                if NUMBERS[name].typecode:
+                    yield f"{attribute_name(field)}: {scope(_ARRAYS[NUMBERS[name].dtype])}{_OTHER_TYPE}"
+            case NamespacedType() as type_:
+                if nested := viewed(type_):
+                    yield f"{attribute_name(field)}: {nested}{_NARROWER}"
+            case (
+                Array(NamespacedType() as type_, _)
+                | BoundedSequence(NamespacedType() as type_, _)
+                | UnboundedSequence(NamespacedType() as type_)
+            ):
+                if nested := viewed(type_):
+                    yield f"{attribute_name(field)}: {scope('list')}[{nested}]{_OTHER_TYPE}"
+            case _:
+                pass
+
+
+def _views_alias(message: Message) -> str:
+    """The attribute of a message class that is this class, unless something else has the name."""
+    taken = {*map(attribute_name, message.fields), *(constant.name for constant in message.constants)}
+    taken.update(enum.name for enum in enums(message))
+    return "Views_" if "Views" in taken else "Views"

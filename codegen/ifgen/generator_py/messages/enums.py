@@ -12,10 +12,11 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 
 from ifgen.definition.interfaces import Constant, Field, Message
+from ifgen.definition.names import attribute_name
 from ifgen.definition.types import Array, BoundedSequence, FieldType, UnboundedSequence
 from ifgen.generator_py.messages.context import EnumText
 from ifgen.generator_py.messages.docstrings import docstring
-from ifgen.generator_py.names import attribute_name, enum_name
+from ifgen.generator_py.names import enum_name
 
 
 def enums(message: Message, spelling: Callable[[str], str] = str) -> tuple[EnumText, ...]:

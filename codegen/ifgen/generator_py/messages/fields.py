@@ -9,6 +9,7 @@ from math import inf
 from typing import Any, TypeAlias
 
 from ifgen.definition.interfaces import Field, Scalar
+from ifgen.definition.names import attribute_name
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -24,8 +25,8 @@ from ifgen.definition.types import (
     ValueType,
 )
 from ifgen.generator_py.codec.program import NUMBERS, Number
-from ifgen.generator_py.messages.scope import Scope
-from ifgen.generator_py.names import attribute_name, slot_name
+from ifgen.generator_py.imports import Scope
+from ifgen.generator_py.names import slot_name
 
 Reference: TypeAlias = Callable[[NamespacedType], str]
 """The name of a message class in the module."""

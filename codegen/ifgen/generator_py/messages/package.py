@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from ifgen.definition.interfaces import Action, Interface, InterfacePackage, Message, Registry, Service
 from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.imports import import_statement, member_order, natural
-from ifgen.generator_py.messages.classes import class_lines, message_class, reference_to, taken_names
+from ifgen.generator_py.imports import Scope, import_statement, member_order, natural
+from ifgen.generator_py.messages.classes import Facts, class_lines, message_class, reference_to, taken_names
 from ifgen.generator_py.messages.context import (
     ActionClass,
     FolderModule,
@@ -17,8 +17,6 @@ from ifgen.generator_py.messages.context import (
     ServiceClass,
 )
 from ifgen.generator_py.messages.docstrings import docstring, source_literal
-from ifgen.generator_py.messages.facts import Facts
-from ifgen.generator_py.messages.scope import Scope
 from ifgen.generator_py.names import module_name
 from ifgen.reading.packages import IDL
 

@@ -16,8 +16,7 @@ from ifgen.generator_py.nodes.context import (
 )
 from ifgen.generator_py.nodes.imports import Imports, references
 from ifgen.generator_py.nodes.members import Clockwork, members_of
-from ifgen.generator_py.nodes.qos import profile
-from ifgen.generator_py.nodes.text import literal, quoted, signature
+from ifgen.generator_py.nodes.text import literal, qos_profile, quoted, signature
 from ifgen.nodl.model import Endpoint, NodeDescription
 
 _CLOCKS = {"ros": "", "steady": "STEADY_TIME", "system": "SYSTEM_TIME"}
@@ -56,7 +55,7 @@ class NodeTexts:
     def profiles(self) -> tuple[tuple[str, str], ...]:
         """The constants of all QoS profiles, and the calls that make them."""
         return tuple(
-            (self._members.of(endpoint).constant, profile(endpoint.qos, self._imports))
+            (self._members.of(endpoint).constant, qos_profile(endpoint.qos, self._imports))
             for endpoint in self._node.endpoints
             if endpoint.qos
         )

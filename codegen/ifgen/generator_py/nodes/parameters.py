@@ -14,9 +14,8 @@ from ifgen.generator_py.nodes.context import (
     ParameterText,
 )
 from ifgen.generator_py.nodes.imports import Imports
-from ifgen.generator_py.nodes.rules import checks, rules
 from ifgen.generator_py.nodes.text import are_long, call, literal, quoted
-from ifgen.nodl.model import NodeDescription, Parameter, ParameterType
+from ifgen.nodl.model import NodeDescription, Parameter, ParameterType, Validator
 
 KINDS: Final = {"bool": "BOOL", "int": "INTEGER", "double": "DOUBLE", "string": "STRING", "byte": "BYTE"}
 """The `Parameter.Type` of each base, without `_ARRAY`."""
@@ -24,6 +23,25 @@ KINDS: Final = {"bool": "BOOL", "int": "INTEGER", "double": "DOUBLE", "string": 
 _ANNOTATIONS: Final = {"bool": "bool", "int": "int", "double": "float", "string": "str"}
 _RANGES: Final = {"int": "IntegerRange", "double": "FloatingPointRange"}
 _RANGE_FIELDS: Final = {"int": "integer_range", "double": "floating_point_range"}
+
+# Tests of NoDL's validators, and what they ask for.
+_NUMBERS = {
+    "bounds": ("{0} <= {value} <= {1}", "must be from {0} to {1}"),
+    "lt": ("{value} < {0}", "must be less than {0}"),
+    "gt": ("{value} > {0}", "must be greater than {0}"),
+    "lt_eq": ("{value} <= {0}", "must be at most {0}"),
+    "gt_eq": ("{value} >= {0}", "must be at least {0}"),
+}
+_ELEMENTS = {
+    "element_bounds": "bounds",
+    "lower_element_bounds": "gt_eq",
+    "upper_element_bounds": "lt_eq",
+}
+_SIZES = {
+    "fixed_size": ("==", "exactly"),
+    "size_gt": (">", "more than"),
+    "size_lt": ("<", "fewer than"),
+}
 
 
 @dataclass
@@ -116,7 +134,7 @@ def constraints(parameter: Parameter) -> list[str]:
     """The constraints of its description and its validators, in words."""
     own = [parameter.additional_constraints] if parameter.additional_constraints else []
     custom = [validator.name for validator in parameter.validators if validator.function is not None]
-    return [*own, *(text for _, text in rules(parameter)), *(f"must pass {name}" for name in custom)]
+    return [*own, *(text for _, text in _rules(parameter)), *(f"must pass {name}" for name in custom)]
 
 
 def _fixed(parameter: Parameter) -> list[str]:
@@ -142,8 +160,8 @@ def _text(parameter: Parameter, imports: Imports) -> ParameterText:
         default="None" if parameter.default is None else literal(parameter.default),
         converted='b"".join' if type_.base == "byte" else "tuple" if type_.array else "",
         descriptor=call(imports("ParameterDescriptor"), _descriptor(parameter, imports), indent=12),
-        rules=tuple((test, quoted(text)) for test, text in rules(parameter)),
-        checks=tuple(_check(imports.function(path), arguments) for path, arguments in checks(parameter)),
+        rules=tuple((test, quoted(text)) for test, text in _rules(parameter)),
+        checks=tuple(_check(imports.function(path), arguments) for path, arguments in _checks(parameter)),
     )
 
 
@@ -164,3 +182,58 @@ def _descriptor(parameter: Parameter, imports: Imports) -> Iterator[str]:
             kind = imports(_RANGES[parameter.type.base])
             lower, upper = map(literal, validator.arguments)
             yield f"{_RANGE_FIELDS[parameter.type.base]}=[{kind}(from_value={lower}, to_value={upper})]"
+
+
+def _rules(parameter: Parameter) -> Iterator[tuple[str, str]]:
+    """An expression of `value` and what it asks for (`must be ...`), for each rule but the custom ones."""
+    size = parameter.type.fixed_size
+    if size is not None:
+        yield f"len(value) <= {size}", f"must have at most {_counted(size, parameter)}"
+    for validator in parameter.validators:
+        if validator.function is None:
+            yield _rule(validator, parameter)
+
+
+def _checks(parameter: Parameter) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The functions of custom validators by their dotted paths, and their arguments as literals."""
+    for validator in parameter.validators:
+        if validator.function is not None:
+            yield validator.function, tuple(map(literal, validator.arguments))
+
+
+def _rule(validator: Validator, parameter: Parameter) -> tuple[str, str]:
+    name = validator.name
+    arguments = [literal(argument) for argument in validator.arguments]
+    if name in _NUMBERS:
+        test, text = _NUMBERS[name]
+        return test.format(*arguments, value="value"), text.format(*arguments)
+    if name in _ELEMENTS:
+        test, text = _NUMBERS[_ELEMENTS[name]]
+        return (
+            f"all({test.format(*arguments, value='element')} for element in value)",
+            f"each element {text.format(*arguments)}",
+        )
+    if name in _SIZES:
+        operator, text = _SIZES[name]
+        size = int(validator.arguments[0])
+        return f"len(value) {operator} {size}", f"must have {text} {_counted(size, parameter)}"
+    choices = ", ".join(arguments)
+    match name:
+        case "one_of":
+            return f"value in [{choices}]", f"must be one of {choices}"
+        case "subset_of":
+            return (
+                f"all(element in [{choices}] for element in value)",
+                f"each element must be one of {choices}",
+            )
+        case "unique":
+            return "len(set(value)) == len(value)", "must not hold a value twice"
+        case "not_empty":
+            return "len(value) > 0", "must not be empty"
+        case _:
+            raise ValueError(f"no rule for the validator {name}")
+
+
+def _counted(size: int, parameter: Parameter) -> str:
+    noun = "element" if parameter.type.array else "character"
+    return f"{size} {noun}{'' if size == 1 else 's'}"

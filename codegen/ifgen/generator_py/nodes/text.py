@@ -1,12 +1,12 @@
-"""Python text as `ruff format` leaves it: literals, calls and signatures."""
+"""Python text as `ruff format` leaves it: literals, calls, signatures and QoS profiles."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from ifgen.generator_py.imports import LINE_LENGTH
-from ifgen.nodl.model import ParameterValue
+from ifgen.nodl.model import ParameterValue, QosProfile
 
 _LONG = 36
 
@@ -61,3 +61,30 @@ def signature(name: str, parameters: Iterable[str], result: str, *, is_async: bo
 def are_long(names: Iterable[str]) -> bool:
     """Whether lines with two of these names may be too long; `ruff format` would break them in other ways."""
     return any(len(name) > _LONG for name in names)
+
+
+def qos_profile(qos: QosProfile, imports: Callable[[str], str]) -> str:
+    """The call that makes a profile; what the description leaves open is rclpy's default."""
+    return call(imports("QoSProfile"), qos_arguments(qos, imports), indent=0)
+
+
+def qos_arguments(qos: QosProfile, imports: Callable[[str], str]) -> Iterator[str]:
+    """The arguments of a profile; `imports` gets the names that they need."""
+    yield f"history={imports('HistoryPolicy')}.{qos.history}"
+    if qos.depth:
+        yield f"depth={qos.depth}"
+    yield f"reliability={imports('ReliabilityPolicy')}.{qos.reliability}"
+    if qos.durability:
+        yield f"durability={imports('DurabilityPolicy')}.{qos.durability}"
+    durations = (("deadline", qos.deadline_ns), ("lifespan", qos.lifespan_ns))
+    for name, nanoseconds in durations:
+        if nanoseconds:
+            yield _duration(name, nanoseconds, imports)
+    if qos.liveliness:
+        yield f"liveliness={imports('LivelinessPolicy')}.{qos.liveliness}"
+    if qos.liveliness_lease_duration_ns:
+        yield _duration("liveliness_lease_duration", qos.liveliness_lease_duration_ns, imports)
+
+
+def _duration(name: str, nanoseconds: int, imports: Callable[[str], str]) -> str:
+    return f"{name}={imports('Duration')}(nanoseconds={nanoseconds:_})"

@@ -12,7 +12,7 @@ from ifgen.definition.interfaces import InterfacePackage, Registry
 from ifgen.diagnostics import Diagnostic, Label, UsageError
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.messages.context import ProjectFile
-from ifgen.generator_py.nodes.package_files import (
+from ifgen.generator_py.nodes.package import (
     further_dependencies,
     requirements_of,
     resource_name,

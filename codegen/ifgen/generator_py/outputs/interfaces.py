@@ -17,6 +17,7 @@ from ifgen.definition.interfaces import (
     Service,
 )
 from ifgen.definition.literals import INTEGER_RANGES
+from ifgen.definition.names import attribute_name, snake_case
 from ifgen.definition.references import references
 from ifgen.definition.spelling import spelled, spelled_value
 from ifgen.definition.type_description import type_hash
@@ -31,7 +32,7 @@ from ifgen.definition.types import (
     NamespacedType,
     ValueType,
 )
-from ifgen.generator_py.names import attribute_name, interface_name, snake_case
+from ifgen.generator_py.names import interface_name
 from ifgen.generator_py.outputs.view import (
     AnnotationView,
     Base,

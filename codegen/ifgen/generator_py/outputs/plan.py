@@ -11,9 +11,9 @@ from string import Formatter
 from typing import Final
 
 from ifgen.config.customization import Output
+from ifgen.definition.names import snake_case
 from ifgen.diagnostics import Diagnostic, InputError, Label
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.names import snake_case
 from ifgen.generator_py.outputs.view import PackageView
 from ifgen.reading import manifest
 

@@ -13,10 +13,10 @@ import jinja2.meta
 from ifgen import resources
 from ifgen.config.customization import Customization, Output
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
-from ifgen.generator_py.templates import merge
 from ifgen.generator_py.templates.check.check import Checker
 from ifgen.generator_py.templates.check.syntax import Template, parse, refusal
 from ifgen.generator_py.templates.check.types import spelled
+from ifgen.generator_py.templates.exports import conflicts, files
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
 from ifgen.reading.storage import MAX_GENERATED, read_limited
 
@@ -37,20 +37,12 @@ def given(environment: jinja2.Environment) -> dict[str, dict[str, str]]:
     return {t: {name: type_ for name, type_ in n.items() if type_} for t, n in spellings.items()}
 
 
-def names(folder: Path) -> Iterator[str]:
-    """The templates in a folder, by their paths in it with `/`."""
-    for path in sorted(folder.rglob("*")):
-        parts = path.relative_to(folder).parts
-        if path.is_file() and not any(part.startswith(".") or part == "__pycache__" for part in parts):
-            yield "/".join(parts)
-
-
 class _Check:
     def __init__(self, environment: jinja2.Environment, custom: Customization) -> None:
         self._environment = environment
         self._custom = custom
-        self._ours = {name: resources.templates() / name for name in names(resources.templates())}
-        self._own = {name: folder / name for folder in custom.folders for name in names(folder)}
+        self._ours = files(resources.templates())
+        self._own = {name: path for folder in custom.folders for name, path in files(folder).items()}
         self._paths = {**{_OURS + name: path for name, path in self._ours.items()}, **self._ours, **self._own}
         self._parsed: dict[str, Template] = {}
 
@@ -126,7 +118,7 @@ def _text(path: Path) -> str:
 def _conflicts(path: Path) -> Iterator[Diagnostic]:
     """The leftover marks of a merge in a template."""
     source = Source(path, _text(path))
-    for start in merge.conflicts(source.text):
+    for start in conflicts(source.text):
         label = Label(Span(source, start, start + len("<<<<<<<")), "it begins here")
         message = "this template has a conflict that is not resolved"
         yield Diagnostic("template-syntax", message, label, help="keep what you want, and delete the marks")

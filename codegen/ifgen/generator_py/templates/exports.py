@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from difflib import get_close_matches
+from difflib import SequenceMatcher, get_close_matches
 from pathlib import Path
 
 from ifgen import resources
 from ifgen.diagnostics import Diagnostic, InputError, UsageError
-from ifgen.generator_py.templates import merge
-from ifgen.generator_py.templates.merge import Merged
 from ifgen.reading.storage import read_limited
 from ifgen.writing import transaction
 
@@ -59,7 +57,7 @@ class Comparison:
     @property
     def unresolved(self) -> int:
         """The number of conflicts that are marked in the user's template."""
-        return len(list(merge.conflicts(self.yours or "")))
+        return len(list(conflicts(self.yours or "")))
 
     @property
     def verdict(self) -> str:
@@ -86,8 +84,17 @@ class Comparison:
 
     def merged(self) -> Merged:
         """The changes of both, conflicts marked."""
-        names = ("ifgen's template now", "as it was exported", "your template")
-        return merge.merge(self.base or "", self.ours or "", self.yours or "", names=names)
+        return merge(self.base or "", self.ours or "", self.yours or "")
+
+
+def files(folder: Path) -> dict[str, Path]:
+    """The files in a folder of templates, by their paths in it with `/`."""
+    found = ((path.relative_to(folder), path) for path in sorted(folder.rglob("*")) if path.is_file())
+    return {
+        name.as_posix(): path
+        for name, path in found
+        if not any(part.startswith(".") or part == "__pycache__" for part in name.parts)
+    }
 
 
 def _conflicts(count: int) -> str:
@@ -146,8 +153,8 @@ def export(
 
 def compare(folder: Path) -> list[Comparison]:
     """The templates in a folder that replace ours or were exported, by name."""
-    names = {name for name in _files(folder) if (resources.templates() / name).is_file()}
-    return [_compared(name, folder) for name in sorted(names | set(_files(folder / RECORD)))]
+    names = files(folder).keys() & files(resources.templates()).keys()
+    return [_compared(name, folder) for name in sorted(names | files(folder / RECORD).keys())]
 
 
 def _compared(name: str, folder: Path) -> Comparison:
@@ -157,11 +164,6 @@ def _compared(name: str, folder: Path) -> Comparison:
     return Comparison(
         name, path, _text(folder / RECORD / name), _text(resources.templates() / name), yours, extends
     )
-
-
-def _files(folder: Path) -> list[str]:
-    found = (path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
-    return [path.as_posix() for path in found if not any(part.startswith(".") for part in path.parts)]
 
 
 def accept(comparisons: Iterable[Comparison], folder: Path) -> list[Path]:
@@ -193,3 +195,73 @@ def _text(path: Path) -> str | None:
         return read_limited(path).decode(errors="replace")
     except FileNotFoundError:
         return None
+
+
+@dataclass(frozen=True, slots=True)
+class Merged:
+    """A text with the changes of both versions; `conflicts` are marked in it as git marks them."""
+
+    text: str
+    conflicts: int
+
+
+def merge(base: str, ours: str, yours: str) -> Merged:
+    """Merge line by line; changes of both that touch are a conflict, unless they are the same."""
+    lines: list[str] = []
+    conflicts = 0
+    for old, first, second in _regions(*(text.splitlines(keepends=True) for text in (base, ours, yours))):
+        if first in (old, second):
+            lines += second
+        elif second == old:
+            lines += first
+        else:
+            conflicts += 1
+            lines += ["<<<<<<< ifgen's template now\n", *map(_ended, first)]
+            lines += ["||||||| as it was exported\n", *map(_ended, old)]
+            lines += ["=======\n", *map(_ended, second), ">>>>>>> your template\n"]
+    return Merged("".join(lines), conflicts)
+
+
+def conflicts(text: str) -> Iterator[int]:
+    """The places of the conflicts that `merge` or git marked in a text."""
+    start: int | None = None
+    parted = False
+    offset = 0
+    for line in text.splitlines(keepends=True):
+        if line.startswith("<<<<<<< "):
+            start, parted = offset, False
+        elif line.rstrip() == "=======":
+            parted = start is not None
+        elif line.startswith(">>>>>>> ") and parted and start is not None:
+            yield start
+            start, parted = None, False
+        offset += len(line)
+
+
+def _regions(
+    base: list[str], first: list[str], second: list[str]
+) -> Iterator[tuple[list[str], list[str], list[str]]]:
+    """The texts cut into regions that begin and end at the same places of all three."""
+    starts = (0, 0, 0)
+    for stop in (*_common(base, first, second), (len(base), len(first), len(second))):
+        old, one, other = map(slice, starts, stop)
+        yield base[old], first[one], second[other]
+        starts = stop
+
+
+def _common(base: list[str], first: list[str], second: list[str]) -> Iterator[tuple[int, int, int]]:
+    """The places where all three agree: before and after each common line."""
+    here, there = _matches(base, first), _matches(base, second)
+    for index in range(len(base)):
+        if index in here and index in there:
+            yield index, here[index], there[index]
+            yield index + 1, here[index] + 1, there[index] + 1
+
+
+def _matches(base: list[str], other: list[str]) -> dict[int, int]:
+    blocks = SequenceMatcher(None, base, other, autojunk=False).get_matching_blocks()
+    return {a + offset: b + offset for a, b, size in blocks for offset in range(size)}
+
+
+def _ended(line: str) -> str:
+    return line if line.endswith("\n") else line + "\n"

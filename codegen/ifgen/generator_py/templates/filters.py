@@ -1,4 +1,4 @@
-"""A Python file of the user's with filters for templates."""
+"""The user's code in templates: a Python file of filters, and errors while templates or filters run."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from typing import Any
 
 import jinja2
 
-from ifgen.diagnostics import Diagnostic, InputError
-from ifgen.generator_py.templates.places import at_line
+from ifgen.config.customization import Customization
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.reading.storage import read_limited
 
 _MODULE = "ifgen_filters"
@@ -81,3 +81,30 @@ def _failure(path: Path, line: int | None, text: str) -> InputError:
     return InputError(
         [Diagnostic("filters", "the filters for templates cannot be used", at_line(path, line or 1, text))]
     )
+
+
+def explained(error: Exception, custom: Customization) -> InputError | None:
+    """The error in one of the user's templates or filters while it ran; None if it was elsewhere."""
+    own = [folder.absolute() for folder in (*custom.folders, custom.filters) if folder is not None]
+    places: dict[Path, int] = {}
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        path = Path(frame.filename)
+        if any(path.is_relative_to(folder) for folder in own):
+            places.setdefault(path, frame.lineno or 1)
+    if not places:
+        return None
+    (path, line), *callers = places.items()
+    said = " ".join(str(error).split())
+    label = at_line(path, line, f"{type(error).__name__}: {said}")
+    used = tuple(at_line(caller, line, "used here") for caller, line in callers)
+    what = "filter" if path == (custom.filters and custom.filters.absolute()) else "template"
+    return InputError([Diagnostic("template-error", f"this {what} cannot be used", label, used)])
+
+
+def at_line(path: Path, line: int, text: str) -> Label:
+    """A label on a whole line of a file, without its indentation."""
+    source = Source(path, read_limited(path).decode("utf-8", "replace"))
+    start = sum(len(text) for text in source.text.splitlines(keepends=True)[: line - 1])
+    shown = source.line(line)
+    indent = len(shown) - len(shown.lstrip())
+    return Label(Span(source, start + indent, start + len(shown)), text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,8 @@ from jinja2 import nodes
 
 from ifgen import resources
 from ifgen.config.customization import Customization
-from ifgen.generator_py.templates.checking import given, names
+from ifgen.generator_py.templates.checking import given
+from ifgen.generator_py.templates.exports import files
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
 from ifgen.reading.storage import read_limited
 
@@ -35,23 +36,14 @@ class Listed:
 
 def listed(custom: Customization) -> tuple[Listed, ...]:
     """All our templates, then the user's templates for outputs. Broken ones have no blocks."""
-    own = {name: folder / name for folder in custom.folders for name in names(folder)}
-    ours = {name: resources.templates() / name for name in names(resources.templates())}
-    trees = {name: _parsed(path) for name, path in ours.items()}
+    own = {name: path for folder in custom.folders for name, path in files(folder).items()}
+    trees = {name: _parsed(path) for name, path in files(resources.templates()).items()}
     variables = given(jinja2.Environment())
-    found = [_ours(name, trees, variables.get(name, {}), own.get(name)) for name in ours]
+    found = [_ours(name, trees, variables.get(name, {}), own.get(name)) for name in trees]
     for output in custom.outputs:
         tree = _parsed(own[output.template]) if output.template in own else None
-        found.append(
-            Listed(
-                output.template,
-                f"{output.path}, output '{output.name}'",
-                _shown(OUTPUT_VARIABLES[output.per]),
-                (),
-                _blocks(tree),
-                own.get(output.template),
-            )
-        )
+        makes, types = f"{output.path}, output '{output.name}'", _shown(OUTPUT_VARIABLES[output.per])
+        found.append(Listed(output.template, makes, types, (), _blocks(tree), own.get(output.template)))
     return tuple(found)
 
 
@@ -65,21 +57,11 @@ def type_name(type_: object) -> str:
 
 
 def _ours(
-    name: str,
-    trees: Mapping[str, nodes.Template | None],
-    variables: Mapping[str, str],
-    yours: Path | None,
+    name: str, trees: Mapping[str, nodes.Template | None], variables: Mapping[str, str], yours: Path | None
 ) -> Listed:
     entry = TEMPLATES.get(name)
     users = () if entry else tuple(user for user, tree in trees.items() if name in _referenced(tree))
-    return Listed(
-        name,
-        entry.makes if entry else "",
-        variables,
-        users,
-        _blocks(trees[name]),
-        yours,
-    )
+    return Listed(name, entry.makes if entry else "", variables, users, _blocks(trees[name]), yours)
 
 
 def _shown(variables: Mapping[str, object]) -> dict[str, str]:
@@ -93,12 +75,8 @@ def _parsed(path: Path) -> nodes.Template | None:
         return None
 
 
-def _referenced(tree: nodes.Template | None) -> set[str]:
-    return set(_references(tree)) if tree else set()
-
-
-def _references(tree: nodes.Template) -> Iterator[str]:
-    return (name for name in jinja2.meta.find_referenced_templates(tree) if name)
+def _referenced(tree: nodes.Template | None) -> set[str | None]:
+    return set(jinja2.meta.find_referenced_templates(tree)) if tree else set()
 
 
 def _blocks(tree: nodes.Template | None) -> tuple[str, ...]:

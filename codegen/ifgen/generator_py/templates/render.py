@@ -10,11 +10,11 @@ import jinja2
 
 from ifgen import resources
 from ifgen.config.customization import Customization
+from ifgen.definition.names import snake_case
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.artifact import Artifact, OutputFile
-from ifgen.generator_py.names import snake_case
-from ifgen.generator_py.templates.failures import explained
-from ifgen.generator_py.templates.gathering import gathered
+from ifgen.generator_py.imports import gathered
+from ifgen.generator_py.templates.filters import explained, load
 from ifgen.writing import cache as kept
 
 
@@ -77,9 +77,7 @@ def _environment_for(custom: Customization) -> jinja2.Environment:
     environment = _environment(tuple(folder.absolute() for folder in custom.folders))
     if custom.filters is None:
         return environment
-    from ifgen.generator_py.templates import filters  # of use to few
-
-    additions = filters.load(custom.filters.absolute(), environment)
+    additions = load(custom.filters.absolute(), environment)
     # Results of filters must not get into the compiled templates, which are kept.
     environment = environment.overlay(optimized=False)
     language: Any = environment  # its tables are typed as narrowly as what jinja2 puts in

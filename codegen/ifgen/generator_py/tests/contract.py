@@ -10,8 +10,7 @@ from ifgen.definition.interfaces import Action, Registry, Service
 from ifgen.generator_py.imports import IN_NODES, Names
 from ifgen.generator_py.nodes.members import Clockwork, NodeMembers, members_of
 from ifgen.generator_py.nodes.parameters import KINDS, declared
-from ifgen.generator_py.nodes.qos import arguments
-from ifgen.generator_py.nodes.text import literal, quoted
+from ifgen.generator_py.nodes.text import literal, qos_arguments, quoted
 from ifgen.generator_py.tests.context import (
     ActionText,
     AskedText,
@@ -174,7 +173,7 @@ class _Writer:
     def _profile(self, endpoint: Endpoint) -> str:
         if endpoint.qos is None:
             return "None"
-        return f"{self._imports('QoSProfile')}({', '.join(arguments(endpoint.qos, self._imports))})"
+        return f"{self._imports('QoSProfile')}({', '.join(qos_arguments(endpoint.qos, self._imports))})"
 
     def _service(self, endpoint: Endpoint) -> ServiceText:
         members = self._members.of(endpoint)

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from ifgen.definition.interfaces import Action, Field, Interface, InterfacePackage, Message, Registry, Service
+from ifgen.definition.names import attribute_name
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -19,7 +20,6 @@ from ifgen.definition.types import (
 )
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.messages.fields import default_value, is_float32, rosidl_text
-from ifgen.generator_py.names import attribute_name
 from ifgen.generator_py.tests.context import InterfaceTests, MessageCase, NodeTests, OwnTests, TestSupport
 from ifgen.generator_py.tests.strategies import INTEGERS, Strategies, enclosed
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from ifgen.definition.interfaces import Constant, Message, Registry
+from ifgen.definition.names import attribute_name
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -20,7 +21,7 @@ from ifgen.definition.types import (
 )
 from ifgen.generator_py.imports import LINE_LENGTH, natural
 from ifgen.generator_py.messages import enums
-from ifgen.generator_py.names import attribute_name, interface_name
+from ifgen.generator_py.names import interface_name
 
 INTEGERS = {
     f"{sign}int{bits}": (0, 2**bits - 1) if sign else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import operator
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 from ifgen.reading import storage
-from ifgen.reading.cmake import patterns
-from ifgen.reading.cmake.values import Doubt, Value, elements, worse
-from ifgen.reading.cmake.variables import ENVIRONMENT
-from ifgen.reading.cmake.words import Word
+from ifgen.reading.cmake.state import ENVIRONMENT, State
+from ifgen.reading.cmake.values import Doubt, Unsure, Value, elements, worse
 
 _TRUE: Final = frozenset({"1", "ON", "YES", "TRUE", "Y"})
 _FALSE: Final = frozenset({"", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND"})
@@ -34,7 +30,7 @@ _UNARY: Final = frozenset(
 _BINARY: Final = frozenset(
     (
         *(f"{kind}{order}" for kind in ("", "STR", "VERSION_") for order in _ORDERS),
-        *("MATCHES", "IN_LIST", "PATH_EQUAL", "IS_NEWER_THAN"),
+        *("MATCHES", "IN_LIST"),
     )
 )
 
@@ -46,42 +42,27 @@ class Answer(NamedTuple):
     doubt: Doubt | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """The queries of a condition: the value of a variable, whether a command is defined, and a doubt.
-
-    `regex` is `patterns.regex` with its cost paid for; paths are relative to `folder`.
-    """
-
-    variable: Callable[[str], Value | None]
-    has_command: Callable[[str], bool]
-    doubt: Callable[[str], Doubt]
-    regex: Callable[[str, Sequence[str]], re.Pattern[str]]
-    folder: Path
-
-
-def holds(words: Sequence[Word], asked: Asked) -> Answer:
-    """Whether a condition holds. One that is wrong is in doubt."""
-    evaluation = _Evaluation(words, asked)
+def evaluate(words: Sequence[Value], state: State, defined: Collection[str]) -> Answer:
+    """Whether a condition holds; `defined` are the commands that there are. One that is wrong is in doubt."""
+    condition = _Condition(words, state, defined)
     with suppress(_WrongError):
-        answer = evaluation.compound(0)
-        if evaluation.is_done():
+        answer = condition.compound(0)
+        if condition.at == len(words):
             return answer
-    return Answer(True, asked.doubt("this condition cannot be understood"))
+    return Answer(True, state.doubt("this condition cannot be understood"))
 
 
 class _WrongError(Exception):
     """The words are no condition."""
 
 
-class _Evaluation:
-    def __init__(self, words: Sequence[Word], asked: Asked) -> None:
+class _Condition:
+    def __init__(self, words: Sequence[Value], state: State, defined: Collection[str]) -> None:
         self._words = words
-        self._asked = asked
-        self._at = 0
-
-    def is_done(self) -> bool:
-        return self._at == len(self._words)
+        self._state = state
+        self._variable = state.variables.get
+        self._defined = defined
+        self.at = 0
 
     def compound(self, depth: int) -> Answer:
         """`AND` and `OR` bind alike: from left to right, whatever stands where."""
@@ -103,90 +84,80 @@ class _Evaluation:
 
     def _test(self, depth: int) -> Answer:
         if self._accept("("):
-            if depth == _MAX_NESTING:
-                raise _WrongError
-            answer = self.compound(depth + 1)
-            if not self._accept(")"):
+            answer = self.compound(depth + 1) if depth < _MAX_NESTING else None
+            if answer is None or not self._accept(")"):
                 raise _WrongError
             return answer
         word = self._next()
-        if not word.quoted and word.text in _UNARY and self._at < len(self._words):
+        following = self._words[self.at] if self.at < len(self._words) else None
+        if following is None:
+            return self._truth(word)
+        if not word.quoted and word.text in _UNARY:
             return self._unary(word.text, self._next())
-        following = self._words[self._at] if self._at < len(self._words) else None
-        if following is not None and not following.quoted and following.text in _BINARY:
-            self._at += 1
+        if not following.quoted and following.text in _BINARY:
+            self.at += 1
             return self._binary(word, following.text, self._next())
         return self._truth(word)
 
     def _accept(self, text: str) -> bool:
-        if self._at < len(self._words) and self._words[self._at][:2] == (text, False):
-            self._at += 1
-            return True
-        return False
+        if self.at == len(self._words):
+            return False
+        word = self._words[self.at]
+        accepted = word.text == text and not word.quoted
+        self.at += accepted
+        return accepted
 
-    def _next(self) -> Word:
-        if self._at == len(self._words):
+    def _next(self) -> Value:
+        if self.at == len(self._words):
             raise _WrongError
-        self._at += 1
-        return self._words[self._at - 1]
+        self.at += 1
+        return self._words[self.at - 1]
 
-    def _truth(self, word: Word) -> Answer:
+    def _truth(self, word: Value) -> Answer:
         constant = _constant(word.text)
         if constant is not None:
             return Answer(constant, word.doubt)
-        value = None if word.quoted else self._asked.variable(word.text)
+        value = None if word.quoted else self._variable(word.text)
         if value is None:
             return Answer(False, word.doubt)
         if value.doubt is not None and value.doubt.lost:
             return Answer(True, value.doubt)
         return Answer(_constant(value.text) is not False, worse(word.doubt, value.doubt))
 
-    def _unary(self, test: str, word: Word) -> Answer:
+    def _unary(self, test: str, word: Value) -> Answer:
+        text = word.text
+        if test == "DEFINED" and text.startswith("ENV{"):
+            name = text[4:].removesuffix("}")
+            doubt = self._state.doubt(f"it is not known whether {name} is set")
+            return Answer(True) if name in ENVIRONMENT else Answer(False, doubt)
         if test == "DEFINED":
-            name = word.text
-            if name.startswith("ENV{"):
-                name = name[4:].removesuffix("}")
-                is_known = name in ENVIRONMENT
-                doubt = None if is_known else self._asked.doubt(f"it is not known whether {name} is set")
-                return Answer(is_known, doubt)
-            value = self._asked.variable(name)
+            value = self._variable(text)
             return Answer(value is not None, worse(word.doubt, value.doubt if value else None))
-        if test == "COMMAND" and self._asked.has_command(word.text.lower()):
+        if test == "POLICY" or (test == "COMMAND" and text.lower() in self._defined):
             return Answer(True)
-        if test == "IS_ABSOLUTE":
-            return Answer(word.text.startswith("/"), word.doubt)
-        if test == "POLICY":
-            return Answer(True)
-        if test in {"EXISTS", "IS_DIRECTORY", "IS_SYMLINK"}:
-            tests = {
-                "EXISTS": storage.exists,
-                "IS_DIRECTORY": storage.is_folder,
-                "IS_SYMLINK": Path.is_symlink,
-            }
+        if test in {"EXISTS", "IS_DIRECTORY"}:
+            there = storage.exists if test == "EXISTS" else storage.is_folder
             try:
-                return Answer(bool(word.text) and tests[test](self._asked.folder / word.text), word.doubt)
+                return Answer(bool(text) and there(self._state.folder / text), word.doubt)
             except (OSError, ValueError):
                 return Answer(False, word.doubt)
-        return Answer(
-            True, self._asked.doubt(f"it is not known whether there is a {test.lower()} {word.text}")
-        )
+        return Answer(True, self._state.doubt(f"it is not known whether there is a {test.lower()} {text}"))
 
-    def _binary(self, left: Word, test: str, right: Word) -> Answer:
+    def _binary(self, left: Value, test: str, right: Value) -> Answer:
         first = self._dereferenced(left)
         if test == "IN_LIST":
-            items = self._asked.variable(right.text)
-            doubt = worse(first.doubt, items.doubt if items else None)
-            return Answer(first.text in elements(items.text if items else "", keep_empty=True), doubt)
-        second = Value(right.text, right.doubt) if test == "MATCHES" else self._dereferenced(right)
+            items = self._state.variables.value(right.text)
+            return Answer(
+                first.text in elements(items.text, keep_empty=True), worse(first.doubt, items.doubt)
+            )
+        second = right if test == "MATCHES" else self._dereferenced(right)
         doubt = worse(first.doubt, second.doubt)
         if test == "MATCHES":
             try:
-                pattern = self._asked.regex(second.text, [first.text])
-            except patterns.Unsure:
-                return Answer(True, self._asked.doubt("this regular expression cannot be evaluated"))
+                pattern = self._state.regex(second.text, [first.text])
+            except Unsure:
+                return Answer(True, self._state.doubt("this regular expression cannot be evaluated"))
             return Answer(pattern.search(first.text) is not None, doubt)
-        if test in {"PATH_EQUAL", "IS_NEWER_THAN"}:
-            return Answer(first.text == second.text, doubt)
         if test.startswith("VERSION_"):
             order = _ORDERS[test.removeprefix("VERSION_")]
             return Answer(order(_version(first.text), _version(second.text)), doubt)
@@ -197,12 +168,10 @@ class _Evaluation:
             return Answer(False, doubt)
         return Answer(_ORDERS[test](*(float(number[0]) for number in numbers if number)), doubt)
 
-    def _dereferenced(self, word: Word) -> Value:
+    def _dereferenced(self, word: Value) -> Value:
         """An operand that is no quoted text may name a variable."""
-        value = None if word.quoted else self._asked.variable(word.text)
-        if value is None:
-            return Value(word.text, word.doubt)
-        return Value(value.text, worse(word.doubt, value.doubt))
+        value = None if word.quoted else self._variable(word.text)
+        return word if value is None else Value(value.text, worse(word.doubt, value.doubt))
 
 
 def _constant(text: str) -> bool | None:

@@ -1,34 +1,95 @@
-"""Runs the statements of CMake files: calls, conditions, loops, and the files that they include."""
+"""Follows a CMake file as far as it decides what `rosidl_generate_interfaces` is called with; runs nothing.
+
+What only a build knows (the answer of another program, what a package that is looked for defines) leaves a
+doubt, which stays with every value that comes of it. So does what is not understood.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+import re
+from collections.abc import Generator, Iterable, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
 
-from ifgen.diagnostics import InputError, Source
+from ifgen.diagnostics import InputError, Source, Span
 from ifgen.reading import storage
-from ifgen.reading.cmake import builtin, loops
-from ifgen.reading.cmake.blocks import Block, Statement, commands_in
-from ifgen.reading.cmake.calls import Call
-from ifgen.reading.cmake.conditions import Answer, Asked, holds
-from ifgen.reading.cmake.keywords import parsed as by_keyword
-from ifgen.reading.cmake.program import Program, parsed
-from ifgen.reading.cmake.state import State
-from ifgen.reading.cmake.text import Command, SyntaxProblem
-from ifgen.reading.cmake.values import EMPTY, Doubt, Value, elements, joined, worse
-from ifgen.reading.cmake.words import Word, doubt_of, texts
-from ifgen.reading.storage import read_source
+from ifgen.reading.cmake import commands
+from ifgen.reading.cmake.conditions import Answer, evaluate
+from ifgen.reading.cmake.state import ExhaustedError, State, Variables
+from ifgen.reading.cmake.text import Block, Command, Statement, SyntaxProblem, commands_in, statements
+from ifgen.reading.cmake.values import Doubt, Value, by_keyword, elements, texts, worse, worst_in
 
 GENERATE: Final = "rosidl_generate_interfaces"
 
+_NUMBER: Final = re.compile(r"-?[0-9]{1,9}")
 _MAX_CALLS: Final = 20
 _MAX_INCLUDED: Final = 49
 _OPTIONS: Final = ("ADD_LINTER_TESTS", "SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")
 
 Ending = Literal["return", "break", "continue"] | None
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call of `rosidl_generate_interfaces`, with its files as they are passed, relative to `folder`.
+
+    `checks_group` is true if rosidl requires the package to be in the group rosidl_interface_packages.
+    """
+
+    folder: Path
+    files: tuple[str, ...]
+    dependencies: tuple[str, ...]
+    span: Span
+    doubt: Doubt | None
+    dependencies_are_known: bool
+    checks_group: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Followed:
+    """The calls that were found in `sources`, the files that were read, and why there may be others."""
+
+    calls: tuple[Call, ...]
+    sources: tuple[Source, ...]
+    unsure: Doubt | None
+
+
+def follow(source: Source, folder: Path, shares: Sequence[Path]) -> Followed:
+    """Follow the CMakeLists.txt of a folder and what it includes. Packages are installed in `shares`."""
+    interpreter = _Interpreter(State(folder, _Extras(shares).variable))
+    try:
+        interpreter.run(source)
+    except SyntaxProblem as error:
+        doubt = Doubt(str(error), Span(source, error.offset, error.offset + 1), True)
+        return Followed((), (source,), doubt)
+    except ExhaustedError:
+        return Followed((), (source,), Doubt("it runs too many commands", Span(source, 0, 0), True))
+    return Followed(tuple(interpreter.calls), (source, *interpreter.included), interpreter.unsure)
+
+
+class _Extras:
+    """The variables that installed packages bring in CMake files of their own; followed when asked."""
+
+    def __init__(self, shares: Sequence[Path]) -> None:
+        self._shares = shares
+        self._packages: dict[str, Variables | None] = {}
+
+    def variable(self, package: str, name: str) -> Value | None:
+        """The value of a variable that a package brings, if it does."""
+        if package not in self._packages:
+            self._packages[package] = None
+            paths = (share / package / "cmake" / f"{package}-extras.cmake" for share in self._shares)
+            path = next((path for path in paths if storage.is_file(path)), None)
+            if path is not None:
+                state = State(path.parent, lambda package, name: None)
+                state.variables.set(f"{package}_DIR", Value(path.parent.as_posix()))
+                with suppress(ExhaustedError):
+                    _Interpreter(state).include(path)
+                self._packages[package] = state.variables
+        extras = self._packages[package]
+        return extras.get(name) if extras else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,11 +101,8 @@ class _Definition:
     source: Source
 
 
-class Interpreter:
-    """Follows CMake files, from one CMakeLists.txt on.
-
-    `calls` are what it found, `unsure` why there may be others, `included` the other files that were read.
-    """
+class _Interpreter:
+    """A run; `calls` are what it found, `unsure` why there may be others, `included` the other files read."""
 
     def __init__(self, state: State) -> None:
         self.calls: list[Call] = []
@@ -55,77 +113,94 @@ class Interpreter:
         self._depth = 0
         self._definitions: dict[str, _Definition] = {}
 
-    def run(self, program: Program, folder: Path | None = None) -> None:
-        """Follow a program; one in a folder of its own has variables of its own. Raises ExhaustedError."""
-        path, before = program.source.path, self._state.folder
-        of_file = {
-            "CMAKE_CURRENT_LIST_FILE": Value(path.as_posix()),
-            "CMAKE_CURRENT_LIST_DIR": Value(path.parent.as_posix()),
+    def run(self, source: Source, folder: Path | None = None) -> None:
+        """Follow a file; one in a folder of its own has variables of its own.
+
+        Raises SyntaxProblem, ExhaustedError.
+        """
+        program = statements(source.text)
+        self._state.spend(len(source.text) // 10)
+        before = self._state.folder
+        variables = {
+            "CMAKE_CURRENT_LIST_FILE": Value(source.path.as_posix()),
+            "CMAKE_CURRENT_LIST_DIR": Value(source.path.parent.as_posix()),
         }
         if folder is not None:
-            of_file["CMAKE_CURRENT_SOURCE_DIR"] = Value(folder.as_posix())
+            variables["CMAKE_CURRENT_SOURCE_DIR"] = Value(folder.as_posix())
         self._state.folder = folder or before
-        self._within(of_file, folder is None, program.statements, program.source)
+        with self._variables.scope(variables, of_macro=folder is None):
+            self._statements(program, source)
         self._state.folder = before
 
-    def _within(
-        self, values: Mapping[str, Value], of_macro: bool, statements: Sequence[Statement], source: Source
-    ) -> None:
-        """Do statements that see some variables of their own."""
-        with self._variables.scope(values, of_macro):
-            self._statements(statements, source)
+    def include(self, path: Path, folder: Path | None = None) -> None:
+        """Do what another file says; one that is not there says nothing. Raises ExhaustedError."""
+        if self._depth == _MAX_CALLS or len(self.included) == _MAX_INCLUDED:
+            return
+        self._depth += 1
+        try:
+            source = storage.read_source(path)
+            self.included.append(source)
+            self.run(source, folder)
+        except SyntaxProblem as problem:
+            self.unsure = self._state.doubt(f"{path.name} is not CMake ({problem})", lost=True)
+        except (InputError, ValueError):
+            pass  # a module of CMake's own, or of another package
+        self._depth -= 1
 
-    def _statements(self, statements: Sequence[Statement], source: Source) -> Ending:
+    def _statements(self, statements: Iterable[Statement], source: Source) -> Ending:
         for statement in statements:
+            ending: Ending
             if isinstance(statement, Command):
                 ending = self._command(statement, source)
+            elif statement.command.name == "if":
+                ending = self._if(statement, source)
             else:
-                self._state.at(source, statement.command)
                 ending = self._block(statement, source)
             if ending is not None:
                 return ending
         return None
 
     def _command(self, command: Command, source: Source) -> Ending:
-        self._state.at(source, command)
-        definition = self._definitions.get(command.name)
-        words = self._state.words(command.arguments)
+        words = self._state.enter(source, command)
         match command.name:
             case "return" | "break" | "continue":
                 return command.name
             case "include":
                 self._include(words)
             case "add_subdirectory":
-                self._add_subdirectory(words)
-            case name if name == GENERATE and definition is None:
+                folder = self._state.folder / (words[0].text if words else "")
+                if not storage.exists(folder / "package.xml"):  # that is a package by itself
+                    self.include(folder / "CMakeLists.txt", folder)
+            case name if name in self._definitions:
+                self._invoke(self._definitions[name], words)
+            case name if name == GENERATE:
                 self._generate(words)
-            case _ if definition is not None:
-                self._invoke(definition, words)
             case name:
-                builtin.call(name, self._state, words)
+                commands.call(name, self._state, words)
         return None
 
     def _block(self, block: Block, source: Source) -> Ending:
+        words = self._state.enter(source, block.command)
         match block.command.name:
-            case "if":
-                return self._if(block, source)
             case "foreach":
-                return self._foreach(block, source)
-            case "while":
-                return self._while(block, source)
+                return self._foreach(block, words, source)
+            case "while":  # no interface package counts
+                self._suspect([block], self._state.doubt("the effect of while here is not known", lost=True))
             case "block":
                 return self._statements(block.body, source)
             case _:  # function or macro
-                name, *parameters = texts(self._state.words(block.command.arguments)) or [""]
+                name, *parameters = texts(words) or [""]
                 self._definitions[name.lower()] = _Definition(block, tuple(parameters), source)
-                return None
+        return None
 
     def _if(self, block: Block, source: Source) -> Ending:
         branches = [block, *block.otherwise]
         doubt: Doubt | None = None
         for number, branch in enumerate(branches):
-            self._state.at(source, branch.command)
-            answer = Answer(True) if branch.command.name == "else" else self._holds(branch.command)
+            words = self._state.enter(source, branch.command)
+            answer = Answer(True)
+            if branch.command.name != "else":
+                answer = evaluate(words, self._state, {*self._definitions, GENERATE})
             if answer.doubt is not None:
                 doubt = worse(doubt, answer.doubt)
                 self._suspect(branches[number:], answer.doubt)
@@ -137,14 +212,15 @@ class Interpreter:
                 return ending
         return None
 
-    def _foreach(self, block: Block, source: Source) -> Ending:
-        names, rows, doubt = loops.turns(self._state, self._state.words(block.command.arguments))
+    def _foreach(self, block: Block, words: Sequence[Value], source: Source) -> Ending:
+        name, *rest = texts(words) or [""]
+        items, doubt = self._items(rest)
+        doubt = worse(worst_in(words), doubt)
         if doubt is not None:
             self._suspect([block], doubt)
-        for row in rows:
-            self._state.at(source, block.command)
-            for name, item in zip(names, row, strict=False):
-                self._variables.set(name, Value(item, doubt))
+        for item in items:
+            self._state.enter(source, block.command)
+            self._variables.set(name, Value(item, doubt))
             ending = self._statements(block.body, source)
             if ending == "return":
                 return ending
@@ -152,24 +228,24 @@ class Interpreter:
                 break
         return None
 
-    def _while(self, block: Block, source: Source) -> Ending:
-        while True:
-            self._state.at(source, block.command)
-            answer = self._holds(block.command)
-            if answer.doubt is not None:
-                self._suspect([block], replace(answer.doubt, lost=True))
-                return None
-            ending = self._statements(block.body, source) if answer.holds else "break"
-            if ending in {"return", "break"}:
-                return "return" if ending == "return" else None
-
-    def _holds(self, command: Command) -> Answer:
-        state = self._state
-        asked = Asked(self._variables.get, self._has_command, state.doubt, state.regex, state.folder)
-        return holds(state.words(command.arguments), asked)
-
-    def _has_command(self, name: str) -> bool:
-        return name in self._definitions or name == GENERATE
+    def _items(self, words: Sequence[str]) -> tuple[Sequence[str], Doubt | None]:
+        """The values for the variable of `foreach(NAME WORDS)`, and what is not sure about them."""
+        match words:
+            case ["IN", *_]:
+                given = by_keyword(words[1:], (), (), ("LISTS", "ITEMS"))
+                lists = [self._variables.value(name) for name in given.get("LISTS", ())]
+                self._state.spend(sum(len(value.text) for value in lists))
+                items = [item for value in lists for item in elements(value.text, keep_empty=True)]
+                return [*items, *given.get("ITEMS", ())], worst_in(lists)
+            case ["RANGE", *limits] if 0 < len(limits) < 4 and all(map(_NUMBER.fullmatch, limits)):
+                first, last, *step = map(int, ["0", *limits] if len(limits) == 1 else limits)
+                numbers = range(first, last + 1, max([1, *step]))
+                self._state.spend(20 * len(numbers))
+                return [str(number) for number in numbers], None
+            case [_, "IN", *_] | ["RANGE", *_]:  # several lists at once
+                return [], self._state.doubt("the effect of foreach here is not known", lost=True)
+            case _:
+                return words, None
 
     def _suspect(self, branches: Sequence[Block], doubt: Doubt) -> None:
         """Whatever the branches may set is in doubt from now on, and so is whether they generate anything."""
@@ -177,8 +253,8 @@ class Interpreter:
             self._state.spend(20)
             if command.name in {GENERATE, "return"} or command.name in self._definitions:
                 self.unsure = self.unsure or doubt
-            if command.name in builtin.SETTERS or command.name in self._definitions:
-                builtin.suspect(self._state, self._state.words(command.arguments), doubt)
+            if command.name in commands.SETTERS or command.name in self._definitions:
+                self._state.suspect(self._state.words(command), doubt)
 
     @contextmanager
     def _assuming(self, doubt: Doubt | None) -> Generator[None]:
@@ -190,67 +266,45 @@ class Interpreter:
         finally:
             self._variables.assumption = before
 
-    def _invoke(self, definition: _Definition, words: list[Word]) -> None:
+    def _invoke(self, definition: _Definition, words: Sequence[Value]) -> None:
         if self._depth == _MAX_CALLS:
             return
         self._depth += 1
-        named = dict(zip(definition.parameters, words, strict=False))
-        values = {name: Value(word.text, word.doubt) for name, word in named.items()}
         rest = words[len(definition.parameters) :]
-        values["ARGC"] = Value(str(len(words)))
-        values["ARGV"] = Value(joined(texts(words)), doubt_of(words))
-        values["ARGN"] = Value(joined(texts(rest)), doubt_of(rest))
-        values |= {f"ARGV{number}": Value(word.text, word.doubt) for number, word in enumerate(words)}
-        of_macro = definition.block.command.name == "macro"
-        self._within(values, of_macro, definition.block.body, definition.source)
+        arguments: Mapping[str, Value] = {
+            **dict(zip(definition.parameters, words, strict=False)),
+            **{f"ARGV{number}": word for number, word in enumerate(words)},
+            "ARGC": Value(str(len(words))),
+            "ARGV": Value(";".join(texts(words)), worst_in(words)),
+            "ARGN": Value(";".join(texts(rest)), worst_in(rest)),
+        }
+        block = definition.block
+        with self._variables.scope(arguments, of_macro=block.command.name == "macro"):
+            self._statements(block.body, definition.source)
         self._depth -= 1
 
-    def _include(self, words: list[Word]) -> None:
+    def _include(self, words: Sequence[Value]) -> None:
         name = words[0].text if words else ""
         path = self._state.folder / name
-        if "." not in Path(name).name:  # a module, of the package or of somebody else
-            folders = elements(self._value("CMAKE_MODULE_PATH").text)
+        if "." not in path.name:  # a module, of the package or of somebody else
+            folders = elements(self._variables.value("CMAKE_MODULE_PATH").text)
             modules = (self._state.folder / folder / f"{name}.cmake" for folder in folders)
             path = next((module for module in modules if storage.is_file(module)), path)
-        self.follow(path)
+        self.include(path)
 
-    def _add_subdirectory(self, words: list[Word]) -> None:
-        folder = self._state.folder / (words[0].text if words else "")
-        if not storage.exists(folder / "package.xml"):  # that is a package by itself
-            self.follow(folder / "CMakeLists.txt", folder)
-
-    def follow(self, path: Path, folder: Path | None = None) -> None:
-        """Do what another file says; one that is not there says nothing. Raises ExhaustedError."""
-        if self._depth == _MAX_CALLS or len(self.included) == _MAX_INCLUDED:
-            return
-        self._depth += 1
-        try:
-            source = read_source(path)
-            self.included.append(source)
-            self.run(parsed(source, self._state.spend), folder)
-        except SyntaxProblem as problem:
-            self.unsure = self._state.doubt(f"{path.name} is not CMake ({problem})", lost=True)
-        except (InputError, ValueError):
-            pass  # a module of CMake's own, or of another package
-        self._depth -= 1
-
-    def _generate(self, words: list[Word]) -> None:
-        target, *rest = words or [Word("", False)]
+    def _generate(self, words: Sequence[Value]) -> None:
+        rest = words[1:]
         said = [item for text in texts(rest) for item in elements(text)]
-        found = by_keyword(said, _OPTIONS, ("LIBRARY_NAME",), ("DEPENDENCIES",))
+        arguments = by_keyword(said, _OPTIONS, ("LIBRARY_NAME",), ("DEPENDENCIES",))
         at = next((at for at, word in enumerate(rest) if word.text == "DEPENDENCIES"), len(rest))
-        skips = {"SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK"} & found.keys()
         self.calls.append(
             Call(
-                self._state.folder,
-                tuple(found[""]),
-                tuple(found.get("DEPENDENCIES", ())),
-                self._state.span,
-                worse(self._variables.assumption, target.doubt, doubt_of(rest[:at])),
-                doubt_of(rest[at:]) is None,
-                not skips,
+                folder=self._state.folder,
+                files=tuple(arguments[""]),
+                dependencies=tuple(arguments.get("DEPENDENCIES", ())),
+                span=self._state.span,
+                doubt=worse(self._variables.assumption, worst_in(words[: at + 1])),
+                dependencies_are_known=worst_in(rest[at:]) is None,
+                checks_group=not {"SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK"} & arguments.keys(),
             )
         )
-
-    def _value(self, name: str) -> Value:
-        return self._variables.get(name) or EMPTY

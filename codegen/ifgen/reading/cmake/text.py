@@ -1,31 +1,31 @@
-"""From the text of a CMake file to its commands and their arguments, as cmake-language(7) has them.
+"""From the text of a CMake file to its commands and blocks, as cmake-language(7) has them.
 
-Written by hand rather than with lark: the language has one kind of statement, which one regular expression
-takes apart in linear time, and every `ifgen generate` reads these files.
+Written by hand rather than with lark: the language has one kind of statement, which regular expressions take
+apart in linear time, and every `ifgen generate` reads these files.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Final, Literal
 
-Quoting = Literal["none", "quotes", "brackets"]
+MAX_NESTING: Final = 50
 
-_TOKEN: Final = re.compile(
+_BLOCKS: Final = frozenset({"if", "foreach", "while", "function", "macro", "block"})
+
+_SPACE: Final = re.compile(r"(?:[ \t\r\n]+|\#\[(=*)\[.*?\]\1\]|\#(?!\[=*\[)[^\n]*)*", re.DOTALL)
+_COMMAND: Final = re.compile(r"([A-Za-z_][A-Za-z0-9_]*)[ \t]*(\()?")
+_ARGUMENT: Final = re.compile(
     r"""
-    (?P<space> [ \t\r\n]+ )
-  | (?P<bracket> \#? \[ (?P<level> =* ) \[ )
-  | (?P<comment> \# [^\n]* )
-  | (?P<open> \( )
-  | (?P<close> \) )
-  | " (?P<quoted> (?: [^"\\] | \\. )* ) "
-  | (?P<plain> (?: [^\s()\#"\\] | \\. ) (?: [^\s()\#"\\] | \\. | "(?: [^"\\\n] | \\. )*" )* )
+    \[ (?P<level> =* ) \[ \n? (?P<brackets> .*? ) \] (?P=level) \]
+  | (?P<parenthesis> [()] )
+  | " (?P<quotes> (?: [^"\\] | \\. )* ) "
+  | (?P<none> (?! \[=*\[ ) (?: [^\s()\#"\\] | \\. ) (?: [^\s()\#"\\] | \\. | "(?: [^"\\\n] | \\. )*" )* )
     """,
     re.VERBOSE | re.DOTALL,
 )
-_NAME: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _CONTINUED_LINE: Final = re.compile(r"(?<!\\)((?:\\\\)*)\\\n")
 
 
@@ -34,9 +34,7 @@ class Argument:
     """One argument as it is written: `text` without its quotes or brackets."""
 
     text: str
-    quoting: Quoting
-    start: int
-    end: int
+    quoting: Literal["none", "quotes", "brackets"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +44,18 @@ class Command:
     name: str
     arguments: tuple[Argument, ...]
     start: int
-    end: int
+
+
+@dataclass(slots=True)
+class Block:
+    """A command that opens a block, and what is in it; `otherwise` are the `elseif` and `else` of an `if`."""
+
+    command: Command
+    body: list[Statement] = field(default_factory=list["Statement"])
+    otherwise: list[Block] = field(default_factory=list["Block"])
+
+
+Statement = Command | Block
 
 
 class SyntaxProblem(Exception):
@@ -57,74 +66,86 @@ class SyntaxProblem(Exception):
         self.offset = offset
 
 
-def commands(text: str) -> list[Command]:
+def commands(text: str) -> Iterator[Command]:
     """The commands of a file, in order. Raises SyntaxProblem."""
-    found: list[Command] = []
-    tokens = _Tokens(text)
-    for kind, start, end, _ in tokens:
-        name = text[start:end]
-        if kind != "plain" or not _NAME.fullmatch(name):
-            raise SyntaxProblem("a command was expected", start)
-        opening = tokens.next_on_this_line()
-        if opening != "open":
-            raise SyntaxProblem(f"a `(` was expected after {name}", end)
-        arguments = tuple(_arguments(tokens, start))
-        found.append(Command(name.lower(), arguments, start, tokens.at))
-    return found
+    at = _after_space(text, 1 if text.startswith("\ufeff") else 0)
+    while at < len(text):
+        match = _COMMAND.match(text, at)
+        if match is None:
+            raise SyntaxProblem("a command was expected", at)
+        if match[2] is None:
+            raise SyntaxProblem(f"a `(` was expected after {match[1]}", match.end())
+        arguments, end = _arguments(text, match.end(), at)
+        yield Command(match[1].lower(), tuple(arguments), at)
+        at = _after_space(text, end)
 
 
-def _arguments(tokens: _Tokens, start: int) -> Iterator[Argument]:
+def _after_space(text: str, at: int) -> int:
+    """The offset after space and comments."""
+    match = _SPACE.match(text, at)
+    return match.end() if match else at
+
+
+def _arguments(text: str, at: int, start: int) -> tuple[list[Argument], int]:
     """The arguments up to the parenthesis that closes; those within are arguments of their own."""
+    found: list[Argument] = []
     depth = 1
-    for kind, begin, end, text in tokens:
-        if kind in {"open", "close"}:
-            depth += 1 if kind == "open" else -1
-            if not depth:
-                return
-        quoting: Quoting = "quotes" if kind == "quoted" else "brackets" if kind == "bracket" else "none"
-        yield Argument(text, quoting, begin, end)
+    while (at := _after_space(text, at)) < len(text):
+        token = _ARGUMENT.match(text, at)
+        if token is None:
+            is_bracket = text.startswith("[", at)
+            raise SyntaxProblem("this bracket has no end" if is_bracket else "this is not CMake", at)
+        at = token.end()
+        match token.lastgroup:
+            case "brackets":
+                found.append(Argument(token["brackets"], "brackets"))
+            case "quotes":
+                found.append(Argument(_CONTINUED_LINE.sub(r"\1", token["quotes"]), "quotes"))
+            case kind:
+                if kind == "parenthesis":
+                    depth += 1 if token[0] == "(" else -1
+                if not depth:
+                    return found, at
+                found.append(Argument(token[0], "none"))
     raise SyntaxProblem("the `)` of this command is missing", start)
 
 
-class _Tokens:
-    """The rest of a text, without space and comments: (kind, start, end, text)."""
+def statements(text: str) -> list[Statement]:
+    """The commands of a file, those of a block inside their block. Raises SyntaxProblem."""
+    bodies: list[list[Statement]] = [[]]
+    blocks: list[Block] = []
+    for command in commands(text):
+        name = command.name
+        if name in _BLOCKS:
+            block = Block(command)
+            bodies[-1].append(block)
+            blocks.append(block)
+            bodies.append(block.body)
+            if len(blocks) > MAX_NESTING:
+                raise SyntaxProblem("blocks are too deep within one another", command.start)
+        elif name in {"else", "elseif"}:
+            if not blocks or blocks[-1].command.name != "if":
+                raise SyntaxProblem(f"there is no `if` for this `{name}`", command.start)
+            branch = Block(command)
+            blocks[-1].otherwise.append(branch)
+            bodies[-1] = branch.body
+        elif name.startswith("end") and name[3:] in _BLOCKS:
+            if not blocks or blocks.pop().command.name != name[3:]:
+                raise SyntaxProblem(f"there is no block that this `{name}` ends", command.start)
+            bodies.pop()
+        else:
+            bodies[-1].append(command)
+    if blocks:
+        unclosed = blocks[-1].command
+        raise SyntaxProblem(f"this `{unclosed.name}` has no end", unclosed.start)
+    return bodies[0]
 
-    def __init__(self, text: str) -> None:
-        self._text = text
-        self.at = 1 if text.startswith("\ufeff") else 0
 
-    def __iter__(self) -> Iterator[tuple[str, int, int, str]]:
-        while self.at < len(self._text):
-            start = self.at
-            kind, text = self._next()
-            if kind not in {"space", "comment"}:
-                yield kind, start, self.at, text
-
-    def next_on_this_line(self) -> str:
-        """The kind of what comes after spaces."""
-        while self._text.startswith((" ", "\t"), self.at):
-            self.at += 1
-        return self._next()[0] if self.at < len(self._text) else ""
-
-    def _next(self) -> tuple[str, str]:
-        match = _TOKEN.match(self._text, self.at)
-        if match is None:
-            raise SyntaxProblem("this is not CMake", self.at)
-        self.at = match.end()
-        kind = match.lastgroup or ""
-        if kind == "bracket":
-            return self._bracket(match)
-        if kind == "quoted":
-            return kind, _CONTINUED_LINE.sub(r"\1", match[kind])
-        return kind, match[0]
-
-    def _bracket(self, match: re.Match[str]) -> tuple[str, str]:
-        """A bracket argument or comment, whose first line break does not count."""
-        closing = f"]{match['level']}]"
-        end = self._text.find(closing, self.at)
-        is_comment = match[0].startswith("#")
-        if end < 0:
-            raise SyntaxProblem(f"the `{closing}` of this bracket is missing", match.start())
-        content = self._text[self.at : end]
-        self.at = end + len(closing)
-        return ("comment", "") if is_comment else ("bracket", content.removeprefix("\n"))
+def commands_in(statements: Sequence[Statement]) -> Iterator[Command]:
+    """All commands, those in blocks included."""
+    for statement in statements:
+        if isinstance(statement, Command):
+            yield statement
+        else:
+            yield statement.command
+            yield from commands_in([*statement.body, *statement.otherwise])

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import Any, Final
 
-from ifgen_runtime.type_description import describe, type_name
+from ifgen_runtime.field_types import type_name
+from ifgen_runtime.type_description import describe
 from ifgen_runtime.type_support.binding import native
 from ifgen_runtime.type_support.descriptions import Description, split
 from ifgen_runtime.type_support.introspection import introspection_handle

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from rclpy.exceptions import InvalidHandle
 
+from ifgen_runtime.field_types import type_name
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.type_description import type_name
 
 if TYPE_CHECKING:
     from ifgen_runtime.mismatch.real_rclpy.graph import Peer

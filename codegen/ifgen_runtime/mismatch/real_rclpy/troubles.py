@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from ifgen_runtime.field_types import type_name
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint
 from ifgen_runtime.mismatch.remembered import Once
-from ifgen_runtime.type_description import type_name
 from ifgen_runtime.type_support import register
 
 

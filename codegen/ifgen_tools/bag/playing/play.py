@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 
 _S = 10**9
 _FASTER = 1.1
-"""What a key changes the rate by."""
+"""The factor by which a key changes the rate."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlayOptions:
-    """What to play, and how; times are [s]."""
+    """The part to play, and how to play it; times are [s]."""
 
     choice: Selection = field(default_factory=lambda: Selection(all_topics=True))
     rate: float = 1.0

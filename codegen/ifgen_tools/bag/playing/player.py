@@ -41,7 +41,7 @@ class Range:
 
 
 def part(start: int, end: int, duration: int | None, until: int | None) -> Range:
-    """What to play of a recording [ns]: for a `duration`, or `until` a time, the later one as in ROS."""
+    """The part of a recording to play [ns]: for a `duration`, or `until` a time, the later one as in ROS."""
     ends = [each for each in (None if duration is None else start + duration, until) if each is not None]
     return Range(start, min(end, max(ends, default=end)))
 

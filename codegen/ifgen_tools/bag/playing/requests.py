@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ifgen_tools.session import Session
 
 SOURCES: Final = {"client_introspection": 0, "service_introspection": 1}
-"""Whose events have the requests: REQUEST_SENT or REQUEST_RECEIVED of service_msgs/msg/ServiceEventInfo."""
+"""The kinds of events that have requests: those of service_msgs/msg/ServiceEventInfo for both sides."""
 
 _READY: Final = 3.0
 """Seconds that servers have to be there before the first request."""

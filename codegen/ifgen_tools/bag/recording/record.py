@@ -11,9 +11,10 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
+from ifgen.signals import Interrupt, defer_interrupt
 from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
 
-from ifgen_tools.bag.keys import SPACE, Stop, keyboard, stoppable
+from ifgen_tools.bag.keys import SPACE, keyboard
 from ifgen_tools.bag.output import require_new, telling
 from ifgen_tools.bag.saying import say, warn
 from ifgen_tools.bag.selection import Selection
@@ -40,7 +41,7 @@ _PATIENCE: Final = {signal.SIGINT: 60.0, signal.SIGTERM: 5.0}
 
 @dataclass(frozen=True, slots=True)
 class RecordCommand:
-    """What to record, and where to."""
+    """The topics to record, and where to write them."""
 
     choice: Selection
     output: Path | None = None
@@ -114,7 +115,7 @@ class Recording:
         """Record, and complete the bag whatever ends it."""
         command = self._command
         with (
-            stoppable() as stop,
+            defer_interrupt(patience=2) as interrupt,  # a write that is cut short leaves half a record
             keyboard({SPACE: ("pause or resume", self.toggle)}, is_wanted=command.has_keys) as keys,
         ):
             try:
@@ -127,13 +128,13 @@ class Recording:
                     say("Recording...")  # and for these
                 if command.has_discovery:
                     self._look_again(self._session.node, command.interval)
-                while self._session.context.ok() and not stop.number and not is_done(self):
+                while self._session.context.ok() and not interrupt.number and not is_done(self):
                     self._session.turn(0.0 if self.topics.has_waiting else _LOOK)
                     self.topics.record_some()
                     self.writer.flush_old()
                     keys.look()
-                if stop.number:
-                    self._take_what_came(stop)
+                if interrupt.number:
+                    self._take_what_came(interrupt)
             except Exception:
                 self.topics.leave(time.time_ns())
                 raise
@@ -143,9 +144,9 @@ class Recording:
                     self.writer.close()
                 finally:
                     self._summarise()
-        stop.raise_again()
+        interrupt.raise_again()
 
-    def _take_what_came(self, stop: Stop) -> None:
+    def _take_what_came(self, interrupt: Interrupt) -> None:
         """Record what has come, or was on its way; count what cannot be recorded in time."""
         until = time.time_ns() + round(_ON_ITS_WAY * 1e9)
         while (left := until - time.time_ns()) > 0:
@@ -157,7 +158,7 @@ class Recording:
             passed = time.monotonic() - begin
             if passed > 1 and asides:
                 say(asides.pop())
-            return passed < _PATIENCE[signal.Signals(stop.number)] and not stop.is_impatient
+            return passed < _PATIENCE[signal.Signals(interrupt.number)] and interrupt.count == 1
 
         self.topics.drain(until, may_go_on)
         self.topics.leave(until)

@@ -50,7 +50,7 @@ Open: TypeAlias = "Callable[[str, type[Any], list[QoSProfile]], Write]"
 
 @dataclass(frozen=True, slots=True)
 class RecordOptions:
-    """What to record, and how."""
+    """The topics to record, and how to record them."""
 
     choice: Selection
     overrides: dict[str, QoSProfile] = field(default_factory=dict)

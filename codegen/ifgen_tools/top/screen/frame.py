@@ -1,4 +1,4 @@
-"""One picture of the screen: text of exactly so many lines and columns."""
+"""One picture of the screen: text of exactly the given number of lines and columns."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def duration(seconds: float) -> str:
 
 
 def queue(waiting: int, depth: int) -> str:
-    """What waits, and how much can: `3/10`."""
+    """The number of waiting messages, and the most that can wait: `3/10`."""
     return f"{waiting}/{depth}" if depth else f"{waiting}/-"
 
 

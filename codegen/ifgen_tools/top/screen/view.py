@@ -1,4 +1,4 @@
-"""What the user has chosen to see, and what keys change about it."""
+"""The user's choice of what to see, and the keys that change it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PAGES: Final = {"page up": -1, "page down": 1}
 
 @dataclass(slots=True)
 class Place:
-    """What is remembered of each table."""
+    """The state of each table."""
 
     column: int = 0
     sorted_by: int = 0
@@ -48,7 +48,7 @@ class View:
     scrolled: int = 0
     """The first parameter on the screen."""
     notes: list[str] = field(default_factory=list[str])
-    """What is shown as long as there are no nodes."""
+    """The text that is shown as long as there are no nodes."""
     places: dict[str, Place] = field(default_factory=lambda: {name: Place() for name in TABLES})
 
     @property
@@ -58,7 +58,7 @@ class View:
 
     @property
     def place(self) -> Place:
-        """What is remembered of it."""
+        """The state of the table that is shown."""
         return self.places[self.table_name]
 
     def rows(self, snapshot: Snapshot) -> list[Any]:

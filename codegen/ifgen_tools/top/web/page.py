@@ -19,7 +19,7 @@ _IDLE: Final = 0.5  # [s] between two looks whether a page is open
 
 
 class Page:
-    """What the open pages know already."""
+    """The pages that are open, and what they have been sent."""
 
     def __init__(self, server: Server, gatherer: Gatherer) -> None:
         self._server = server

@@ -6,9 +6,8 @@ from collections import Counter, defaultdict, deque
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
 
-from ifgen.graph.layout import Edge, layout
-from ifgen.observing.running_graph import FRAMEWORK_SERVICES, FRAMEWORK_TOPICS
-
+from ifgen_tools.graph.layout import Edge, layout
+from ifgen_tools.graph.reading import FRAMEWORK_SERVICES, FRAMEWORK_TOPICS
 from ifgen_tools.top.screen.texts import shortened
 from ifgen_tools.top.snapshot import Snapshot
 
@@ -28,7 +27,7 @@ Structure = tuple[tuple[str, ...], tuple[Part, ...]]
 
 
 def structure(snapshot: Snapshot) -> Structure:
-    """What there is to draw: nodes, topics, services and actions without those that every node has."""
+    """The parts to draw: nodes, topics, services and actions without those that every node has."""
     parts: list[Part] = [
         ("topic", each.name, _once(each.publishers), _once(each.subscriptions))
         for each in snapshot.topics

@@ -72,7 +72,7 @@ class Server:
 
     @property
     def hosts(self) -> tuple[str, ...]:
-        """What a Host header may be; browsers leave port 80 out."""
+        """The values that a Host header may have; browsers leave port 80 out."""
         hosts = tuple(f"{name}:{self.port}" for name in ("127.0.0.1", "localhost"))
         return hosts if self.port != 80 else (*hosts, "127.0.0.1", "localhost")
 

@@ -11,7 +11,7 @@ import pytest
 import rclpy
 from example_interfaces.srv import AddTwoInts
 from ifgen_tools.service.echo import echo
-from ifgen_tools.texts.yaml_text import Style
+from ifgen_tools.texts.formats import Style
 from rclpy.node import Node
 from rclpy.qos import qos_profile_services_default
 from rclpy.service_introspection import ServiceIntrospectionState

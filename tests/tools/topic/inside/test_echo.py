@@ -134,7 +134,7 @@ def test_what_is_wrong_is_named(ifgen: Run, node: Node, words: list[str], code: 
 
 
 def test_another_type_comes_later(ifgen: Run, node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("ifgen_tools.topic.listening._LOOK_EVERY", 0.01)
+    monkeypatch.setattr("ifgen_tools.topic.topics._LOOK_EVERY", 0.01)
     threading.Timer(0.1, lambda: node.create_publisher(Float64, "late", 1)).start()
     done = ifgen("topic", "echo", "/late", "std_msgs/msg/String", "--timeout", "5")
     refusal = "error: the topic '/late' has the type std_msgs/msg/Float64, not std_msgs/msg/String\n"

@@ -1,13 +1,14 @@
-"""The body of a function, statement after statement, and the constants at the level of its module."""
+"""Functions of a codec, statement after statement, and the constants at the level of its module."""
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import TypeAlias
 
-from ifgen.generator_py.codec.python.code import POSITION, Positioned
-from ifgen.generator_py.codec.python.lines import lines_of, wrapped
+from ifgen.definition.types import NamespacedType
 from ifgen.generator_py.codec.python.statements import (
+    POSITION,
     Assign,
     Choice,
     Do,
@@ -15,10 +16,13 @@ from ifgen.generator_py.codec.python.statements import (
     If,
     Move,
     Place,
+    Positioned,
     Refuse,
     Return,
     Statement,
+    lines_of,
     without_idle_moves,
+    wrapped,
 )
 
 
@@ -153,3 +157,21 @@ class Constants:
     def lines(self) -> tuple[str, ...]:
         """The assignments, in the order of first use."""
         return tuple(line for value, name in self._names.items() for line in wrapped(f"{name} = {value}", 0))
+
+
+Reference: TypeAlias = Callable[[NamespacedType], str]
+"""The name of a message class in the module."""
+
+
+def functions(name: str, arguments: str, bodies: Iterable[Body]) -> Iterator[str]:
+    """A function of these arguments that returns a new value of the last one, `p`.
+
+    Where it has several bodies, each is a function of its own, and they are called one after another.
+    """
+    texts = [body.lines(1) for body in bodies]
+    if len(texts) > 1:
+        calls = [f"{name}_{number}({arguments})" for number in range(1, len(texts) + 1)]
+        for call, lines in zip(calls, texts, strict=True):
+            yield "\n".join([f"def {call}:", *lines])
+        texts = [[*(f"    p = {call}" for call in calls[:-1]), f"    return {calls[-1]}"]]
+    yield "\n".join([f"def {name}({arguments}):", *texts[0]])

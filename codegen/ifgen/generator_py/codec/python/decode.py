@@ -28,12 +28,18 @@ from ifgen.generator_py.codec.program import (
     Value,
     Values,
 )
-from ifgen.generator_py.codec.python.body import Constants
-from ifgen.generator_py.codec.python.code import POSITION, Positioned, product, slot_text, variable
-from ifgen.generator_py.codec.python.functions import Reference
+from ifgen.generator_py.codec.python.body import Constants, Reference
 from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece, run_format
 from ifgen.generator_py.codec.python.reads import Reads, tuple_target
-from ifgen.generator_py.codec.python.statements import Assign, Do
+from ifgen.generator_py.codec.python.statements import (
+    POSITION,
+    Assign,
+    Do,
+    Positioned,
+    product,
+    slot_text,
+    variable,
+)
 
 
 class Decoder:

@@ -14,12 +14,12 @@ starts over with `encode_any`, which accepts what can be accepted and names the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Final, assert_never
+from collections.abc import Callable, Sequence
+from typing import Final, NamedTuple, assert_never
 
 from ifgen.definition.types import BasicTypeName
-from ifgen.generator_py.codec.alignment import Alignment
 from ifgen.generator_py.codec.positions import (
+    Alignment,
     Positions,
     Tile,
     following_alignments,
@@ -40,12 +40,10 @@ from ifgen.generator_py.codec.program import (
     Value,
     Values,
 )
-from ifgen.generator_py.codec.python.body import Constants
-from ifgen.generator_py.codec.python.checks import ClassCheck, checked_value
-from ifgen.generator_py.codec.python.code import POSITION, Positioned, product, slot_text, variable
-from ifgen.generator_py.codec.python.functions import Reference
+from ifgen.generator_py.codec.python.body import Constants, Reference
 from ifgen.generator_py.codec.python.parts import Parts, Wire
 from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece
+from ifgen.generator_py.codec.python.statements import POSITION, Positioned, product, slot_text, variable
 
 _LARGE_ARRAY: Final = 256
 _WIRES: Final[dict[BasicTypeName, str]] = {
@@ -271,3 +269,34 @@ class Encoder:
         with self._out.body.when(elements):
             self._out.body.do(f"out[-1] = {self._runtime('wire')}[{text}]")
             self._out.body.move(f"len(out[-1]) - len({self._runtime('padded_wire')}[{text}])")
+
+
+class ClassCheck(NamedTuple):
+    """Whether a value is exactly of a class."""
+
+    value: str
+    class_name: str
+
+    @property
+    def fails(self) -> str:
+        """The condition for another class."""
+        return f"{self.value}.__class__ is not {self.class_name}"
+
+    @property
+    def holds(self) -> str:
+        """The condition for this class."""
+        return f"{self.value}.__class__ is {self.class_name}"
+
+
+_CLASSES: dict[BasicTypeName, str] = {"boolean": "bool", "float": "float", "double": "float"}
+
+
+def checked_value(value: Value, name: Callable[[str], str]) -> tuple[list[ClassCheck], str]:
+    """The checks of a basic value, and the value to pack. `struct` itself checks integers and octets."""
+    slot = slot_text(value.slot)
+    if value.type == "char":
+        return [], f'{slot}.encode("latin-1")'
+    if value.type not in _CLASSES:
+        return [], slot
+    variable = name("x")
+    return [ClassCheck(f"({variable} := {slot})", _CLASSES[value.type])], variable

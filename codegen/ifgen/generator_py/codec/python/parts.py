@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ifgen.generator_py.codec.alignment import Alignment
+from ifgen.generator_py.codec.positions import Alignment
 from ifgen.generator_py.codec.python.body import Body, Constants
-from ifgen.generator_py.codec.python.code import POSITION, Positioned
 from ifgen.generator_py.codec.python.pieces import (
     HEADER_SIZE,
     Piece,
@@ -19,6 +18,7 @@ from ifgen.generator_py.codec.python.pieces import (
     padding_piece,
     run_format,
 )
+from ifgen.generator_py.codec.python.statements import POSITION, Positioned
 
 
 class Wire(NamedTuple):

@@ -7,8 +7,7 @@ from itertools import groupby
 from typing import Final, NamedTuple
 
 from ifgen.definition.types import BasicTypeName
-from ifgen.generator_py.codec.alignment import Alignment
-from ifgen.generator_py.codec.positions import COUNT_SIZE
+from ifgen.generator_py.codec.positions import COUNT_SIZE, Alignment
 from ifgen.generator_py.codec.program import NUMBERS
 
 HEADER_SIZE: Final = 4

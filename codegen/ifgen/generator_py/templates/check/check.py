@@ -9,11 +9,9 @@ import jinja2
 from jinja2 import nodes
 
 from ifgen.diagnostics import Diagnostic, InputError
-from ifgen.generator_py.templates.check.blocks import definitions, idle_blocks
-from ifgen.generator_py.templates.check.conditions import facts_of
 from ifgen.generator_py.templates.check.expressions import Expressions
-from ifgen.generator_py.templates.check.frame import Block, Frame, Macro
-from ifgen.generator_py.templates.check.syntax import Template
+from ifgen.generator_py.templates.check.frame import Frame, Macro, facts_of
+from ifgen.generator_py.templates.check.syntax import Block, Template, definitions, idle_blocks
 from ifgen.generator_py.templates.check.types import (
     ANYTHING,
     TEXT,

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from difflib import get_close_matches
 
 import jinja2
 from jinja2 import nodes
 from jinja2.filters import FILTERS
 
+from ifgen.diagnostics import Diagnostic, Label, Severity
 from ifgen.generator_py.templates.check import filters
-from ifgen.generator_py.templates.check.conditions import facts_of
-from ifgen.generator_py.templates.check.frame import Frame, Macro, path_of
-from ifgen.generator_py.templates.check.reporter import Reporter
+from ifgen.generator_py.templates.check.frame import Frame, Macro, facts_of, path_of
 from ifgen.generator_py.templates.check.types import (
     ANYTHING,
     NOTHING,
@@ -36,16 +36,38 @@ from ifgen.generator_py.templates.check.types import (
     of_value,
 )
 
+_LISTED = 12
+
+
 _DEFINED = frozenset(("defined", "undefined"))
 _DEFAULTS = frozenset(("default", "d"))
 
 
-class Expressions(Reporter):
-    """Finds the types of expressions."""
+class Expressions:
+    """Finds the types of expressions; `problems` are the mistakes in them, each place and message once."""
 
     def __init__(self, environment: jinja2.Environment) -> None:
-        super().__init__()
         self.environment = environment
+        self.problems: dict[tuple[str, int, str], Diagnostic] = {}
+
+    def report(  # noqa: PLR0913 - one place where a problem gets its form
+        self,
+        frame: Frame,
+        node: nodes.Node,
+        rule: str,
+        message: str,
+        *,
+        word: str = "",
+        known: Iterable[str] = (),
+        advice: str | None = None,
+        warning: bool = False,
+    ) -> None:
+        """Note a problem at a node; `word` is the part of it to point to, `known` what it may have meant."""
+        span = frame.template.span(node, word)
+        advice = advice or _advice(word, sorted(known))
+        severity: Severity = "warning" if warning else "error"
+        found = Diagnostic(rule, message, Label(span), help=advice, severity=severity)
+        self.problems.setdefault((str(span.source.path), span.start, message), found)
 
     def call_macro(self, macro: Macro, arguments: Sequence[Type], keywords: Mapping[str, Type]) -> None:
         """Look at what a macro does with arguments of these types."""
@@ -328,3 +350,10 @@ class Expressions(Reporter):
 
 def _owner(node: nodes.Node) -> nodes.Node:
     return node.node if isinstance(node, nodes.Getattr) else node
+
+
+def _advice(word: str, known: Sequence[str]) -> str | None:
+    close = get_close_matches(word, known, n=1) if word else ()
+    if close:
+        return f"did you mean '{close[0]}'?"
+    return f"known here: {', '.join(known)}" if known and len(known) <= _LISTED else None

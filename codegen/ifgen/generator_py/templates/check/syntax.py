@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import TypeAlias
 
 import jinja2
 from jinja2 import nodes
@@ -40,6 +41,9 @@ class Template:
         if found < 0 or found - start > 200:
             return Span(self.source, start, min(start + 1, len(text)))
         return Span(self.source, found, min(found + max(len(word), 1), len(text)))
+
+
+Block: TypeAlias = tuple[Template, nodes.Block]
 
 
 def refusal(template: Template, environment: jinja2.Environment) -> Diagnostic | None:
@@ -153,3 +157,26 @@ def _refused(source: Source, span: Span, error: jinja2.TemplateSyntaxError) -> D
     message = str(error.message).rstrip(".")
     label = Label(span, message[:1].lower() + message[1:])
     return Diagnostic("template-syntax", "jinja2 cannot parse this template", label)
+
+
+def definitions(chain: Sequence[Template]) -> dict[str, list[Block]]:
+    """The definitions of each block, the one that counts first; a template comes before what it extends."""
+    found: dict[str, list[Block]] = {}
+    for template in chain:
+        for block in template.tree.find_all(nodes.Block):
+            found.setdefault(str(block.name), []).append((template, block))
+    return found
+
+
+def idle_blocks(chain: Sequence[Template]) -> Iterator[tuple[Template, nodes.Block, set[str]]]:
+    """Blocks that nothing renders, since no template above has their name, with the names that there are."""
+    *below, root = chain
+    above = {str(block.name) for block in root.tree.find_all(nodes.Block)}
+    for template in reversed(below):
+        inner = {
+            str(b.name) for block in template.tree.find_all(nodes.Block) for b in block.find_all(nodes.Block)
+        }
+        for block in template.tree.find_all(nodes.Block):
+            if block.name not in above | inner:
+                yield template, block, above
+        above |= {str(block.name) for block in template.tree.find_all(nodes.Block)}

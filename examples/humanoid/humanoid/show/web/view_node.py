@@ -16,8 +16,8 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from ifgen.graph.model import Graph
-from ifgen.observing.running_graph import FRAMEWORK_TOPICS, hidden, of_running
+from ifgen_tools.graph.connections import Graph, of_endpoints
+from ifgen_tools.graph.reading import FRAMEWORK_TOPICS, is_hidden, read
 from PIL import Image as Pictures
 from rcl_interfaces.msg import Log, Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
@@ -184,7 +184,7 @@ class WebView(Node):
         """Check what is new in the graph, and measure the rates of all topics per simulated second."""
         for topic, types in self.get_topic_names_and_types():
             # Pictures would cost more than everything else.
-            if topic in FRAMEWORK_TOPICS or hidden(topic) or len(types) != 1 or types[0] == _PICTURE:
+            if topic in FRAMEWORK_TOPICS or is_hidden(topic) or len(types) != 1 or types[0] == _PICTURE:
                 continue
             if topic not in self._heard and (kind := _message_class(types[0])) is not None:
                 self._subscribe(topic, kind, _LATEST)
@@ -193,7 +193,8 @@ class WebView(Node):
             self._rates.count(now, self._simulated, counts)
         if (factor := self._rates.factor) is not None:
             self.page.show("factor", None if self._commands.paused else round(factor, 2))
-        graph = of_running(self)
+        view = read(self).of_authors()
+        graph = of_endpoints(view.nodes, view.endpoints)
         self.page.show("graph", _drawing(graph))
         kinds = {c.name: c.type_names[0] for c in graph.connections if c.kind == "topic"}
         if rates := self._rates.per_second():

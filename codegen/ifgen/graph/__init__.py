@@ -1,1 +1,0 @@
-"""Which node talks to which: from node descriptions or a running system to Mermaid, DOT and SVG."""

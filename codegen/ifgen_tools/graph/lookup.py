@@ -1,0 +1,90 @@
+"""What a user names of the graph: nodes, services and actions, and how they are listed."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any, Final
+
+import click
+
+from ifgen_tools import discovery
+from ifgen_tools.errors import Absent, did_you_mean
+from ifgen_tools.graph.reading import Named, node_names
+
+if TYPE_CHECKING:
+    from ifgen_tools.session import Session
+
+_PATIENCE: Final = 5.0
+"""Seconds that a named node may take to be discovered."""
+
+
+def hidden_nodes_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """`--include-hidden-nodes`, as `include_hidden`."""
+    return click.option(
+        "--include-hidden-nodes", "include_hidden", is_flag=True, help="Hidden nodes as well."
+    )(command)
+
+
+def find_node(session: Session, name: str, spin_time: float | None = None) -> str:
+    """The full name of a node that the user named, once it is there.
+
+    A hidden one, too: a user who names it wants it. If several have the name, it says so on stderr.
+    Raises ToolError if it is not there after `spin_time` [s].
+    """
+    wanted = name if name.startswith("/") else f"/{name}"
+    domain = session.context.get_domain_id()
+
+    def is_there() -> bool:
+        return wanted in node_names(session.node, True)
+
+    def is_known() -> bool:
+        return is_there() or (session.transport == "local" and discovery.knows_everybody(domain))
+
+    session.wait_for(is_known, _PATIENCE if spin_time is None else spin_time)
+    if is_there():
+        if (number := node_names(session.node, True).count(wanted)) > 1:
+            print(
+                f"warning: {number} nodes are called {wanted}: what they have is shown together, or that of "
+                "one of them only",
+                file=sys.stderr,
+            )
+        return wanted
+    known = node_names(session.node)
+    advice = did_you_mean(wanted, known) or (
+        "see `ifgen node list`" if known else "no node is running, or none that this process can see"
+    )
+    raise Absent(f"there is no node {wanted!r}", advice)
+
+
+def pick(found: Iterable[Named], name: str, what: str) -> Named:
+    """The one of this name; `what` is `service` or `action`. Raises ToolError that names near ones."""
+    known = {each.name: each for each in found}
+    full = name if name.startswith("/") else f"/{name}"
+    if full not in known:
+        near = did_you_mean(full, sorted(known))
+        raise Absent(f"there is no {what} {full!r}", near or f"see `ifgen {what} list`")
+    return known[full]
+
+
+def of_type(found: Iterable[Named], type_name: str, kind: str) -> list[Named]:
+    """Those with a type, `pkg/srv/Name` or for short `pkg/Name`; `kind` is `srv` or `action`."""
+    package, _, name = type_name.partition("/")
+    wanted = type_name if "/" in name else f"{package}/{kind}/{name}"
+    return [each for each in found if wanted in each.types]
+
+
+def print_named(
+    found: Iterable[Named], *, show_types: bool = False, count: bool = False, as_json: bool = False
+) -> None:
+    """Print a line for each, or only how many there are."""
+    found = list(found)
+    if count:
+        print(len(found))
+    elif as_json:
+        print(json.dumps([asdict(each) for each in found], indent=2))
+    else:
+        for each in found:
+            print(f"{each.name} [{', '.join(each.types)}]" if show_types else each.name)

@@ -1,0 +1,1 @@
+"""`ifgen nodl`: descriptions of nodes that run, and the schema of descriptions."""
