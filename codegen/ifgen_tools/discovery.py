@@ -45,7 +45,7 @@ def queues(domain: int) -> dict[tuple[int, ...], tuple[str, int]]:
 
     names = {KEEP_LAST: "KEEP_LAST", KEEP_ALL: "KEEP_ALL"}
     here = Domain.numbered(domain)
-    here.bury()
+    here.close_pending()
     with here.lock:
         ends = [end for topic in here.topics.values() for end in (*topic.writers, *topic.readers)]
         return {
@@ -60,7 +60,7 @@ def service_hashes(domain: int) -> dict[tuple[int, ...], str]:
     from rmw_local.domain import Domain
 
     here = Domain.numbered(domain)
-    here.bury()
+    here.close_pending()
     with here.lock:
         ends = [end for service in here.services.values() for end in (*service.servers, *service.clients)]
         return {tuple(end.gid): end.service_type.type_hash for end in ends}
