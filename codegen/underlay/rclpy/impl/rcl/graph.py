@@ -266,12 +266,6 @@ def _info(end: _End, endpoint_type: int) -> dict[str, Any]:
     }
 
 
-def whole_profiles(node: Node) -> dict[tuple[int, ...], dict[str, Any]]:
-    """Return the keyword arguments of a QoSProfile for each end of a topic by gid: also what DDS hides."""
-    graph = _Snapshot(node, "Failed to get information about topics")
-    return {tuple(each.gid): profile_dict(each.qos) for each in (*graph.writers, *graph.readers)}
-
-
 def service_types(node: Node, service_name: str) -> list[tuple[str, str, str]]:
     """Return (full name of the node, type, type hash) of each server of a full service name.
 
@@ -283,12 +277,6 @@ def service_types(node: Node, service_name: str) -> list[tuple[str, str, str]]:
         for server in graph.servers
         if server.name == service_name
     ]
-
-
-def service_hashes(node: Node) -> dict[tuple[int, ...], str]:
-    """Return the type hash of the whole service for each server and client by gid."""
-    graph = _Snapshot(node, "Failed to get information about services")
-    return {tuple(each.gid): each.service_type.type_hash for each in (*graph.servers, *graph.clients)}
 
 
 def node_names(node: Node) -> list[tuple[str, str, str]]:
