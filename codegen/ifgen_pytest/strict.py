@@ -49,10 +49,10 @@ class StrictCheck:
         self._watch_definitions()
         try:
             observer = importlib.import_module("rmw_local.observer")
-            sync_calls = importlib.import_module("rclpy.impl.sync_calls")
+            blocking = importlib.import_module("rclpy.impl.blocking")
         except ImportError:
             return  # the real rclpy
-        self._exchange(sync_calls, "enabled", True)
+        self._exchange(blocking, "enabled", True)
         self._undo.append((observer._Current, "observer", observer.install(self._findings)))
 
     def _watch_definitions(self) -> None:

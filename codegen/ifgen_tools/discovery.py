@@ -18,16 +18,16 @@ def knows_everybody(domain: int) -> bool:
     """Whether the graph of a ROS domain has everybody who was there before this process's first node."""
     from rmw_local.domain import Domain
 
-    reach = Domain.numbered(domain).reach
-    return reach is None or reach.knows_everybody()
+    found = Domain.numbered(domain).discovery
+    return found is None or found.knows_everybody()
 
 
 def lacks_zenoh(domain: int) -> bool:
     """Whether other processes are there, but not reached because Zenoh is not installed."""
     from rmw_local.domain import Domain
 
-    reach = Domain.numbered(domain).reach
-    return reach is not None and reach.lacks_zenoh()
+    found = Domain.numbered(domain).discovery
+    return found is not None and found.lacks_zenoh()
 
 
 def survey(domain: int) -> Callable[[], Iterable[bytes]]:
@@ -45,7 +45,7 @@ def queues(domain: int) -> dict[tuple[int, ...], tuple[str, int]]:
 
     names = {KEEP_LAST: "KEEP_LAST", KEEP_ALL: "KEEP_ALL"}
     here = Domain.numbered(domain)
-    here.bury()
+    here.close_pending()
     with here.lock:
         ends = [end for topic in here.topics.values() for end in (*topic.writers, *topic.readers)]
         return {
@@ -60,7 +60,7 @@ def service_hashes(domain: int) -> dict[tuple[int, ...], str]:
     from rmw_local.domain import Domain
 
     here = Domain.numbered(domain)
-    here.bury()
+    here.close_pending()
     with here.lock:
         ends = [end for service in here.services.values() for end in (*service.servers, *service.clients)]
         return {tuple(end.gid): end.service_type.type_hash for end in ends}

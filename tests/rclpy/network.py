@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from rmw_local.qos import TRANSIENT_LOCAL
-from rmw_local.transports.seam import (
+from rmw_local.transports.interface import (
     Ask,
     Audience,
     Entity,
@@ -96,7 +96,7 @@ class Network:
 
 
 class RecordingTransport:
-    """A `rmw_local.transports.seam.Transport`."""
+    """A `rmw_local.transports.interface.Transport`."""
 
     def __init__(self, network: Network, name: str) -> None:
         self.name = name

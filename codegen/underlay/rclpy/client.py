@@ -10,11 +10,11 @@ from rmw_local import timing
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
-from rclpy.impl import sync_calls
+from rclpy.impl import blocking
+from rclpy.impl.blocking import wait_for_graph
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
 from rclpy.impl.typed import Generic, ServiceT_co
-from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
 from rclpy.task import Future
@@ -68,9 +68,9 @@ class Client(Generic[ServiceT_co]):
         Not for callbacks of a single-threaded executor: the response waits until they return.
         Raises TypeError for a request of another class, and what the future holds as its exception.
         """
-        if sync_calls.enabled:
+        if blocking.enabled:
             call = f"service '{self.srv_name}'"
-            sync_calls.must_be_answerable(self, call, "client.call_async(request)", timeout_sec)
+            blocking.must_be_answerable(self, call, "client.call_async(request)", timeout_sec)
         future = self.call_async(request)
         answered = timing.Event()
         future.add_done_callback(lambda _: answered.set())

@@ -18,16 +18,15 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from rmw_local import timing
 
-from rclpy._executor.callback_runner import CallbackRunner
+from rclpy._executor.callback_runner import CallbackRunner, TaskList, Work, wake_when_done
 from rclpy._executor.measuring import Meter
 from rclpy._executor.ready_queue import ReadyQueue
-from rclpy._executor.tasks import TaskList, Work, wake_when_done
 from rclpy._executor.watch import Watch
 from rclpy._executor.work_finder import Condition, End, WorkFinder, never
 from rclpy.context import Context
 from rclpy.guard_condition import GuardCondition
-from rclpy.impl import sync_calls
-from rclpy.impl.lending import lend
+from rclpy.impl import blocking
+from rclpy.impl.reexports import reexport
 from rclpy.signals import SignalHandlerGuardCondition
 from rclpy.task import Future, Task
 from rclpy.utilities import get_default_context
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 WaitableEntityType = TypeVar("WaitableEntityType")
 
@@ -341,8 +340,8 @@ class SingleThreadedExecutor(Executor):
             self._work = None
             raise
         if isinstance(item, Watch):
-            if sync_calls.enabled:
-                with sync_calls.inside_callback(self, item.entity):
+            if blocking.enabled:
+                with blocking.inside_callback(self, item.entity):
                     self._runner.run(item, self)
             else:
                 self._runner.run(item, self)

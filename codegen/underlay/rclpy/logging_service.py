@@ -9,7 +9,7 @@ from rcl_interfaces.msg import LoggerLevel, SetLoggerLevelsResult
 from rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 
 import rclpy
-from rclpy.impl.lending import lend
+from rclpy.impl.reexports import reexport
 from rclpy.qos import qos_profile_services_default
 from rclpy.validate_topic_name import TOPIC_SEPARATOR_STRING
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 
 class LoggingService:

@@ -20,10 +20,15 @@ from rcl_interfaces.msg import (
 from rcl_interfaces.msg import Parameter as ParameterMsg
 
 from rclpy._parameters import rules
-from rclpy._parameters.changes import Restoring, keep_or_remove, must_fit
-from rclpy._parameters.declarations import read_declaration
-from rclpy._parameters.listing import check_strings, list_names
-from rclpy._parameters.mismatch import ON_TYPE_MISMATCH, follow_policy
+from rclpy._parameters.declarations import (
+    Restoring,
+    check_strings,
+    keep_or_remove,
+    list_names,
+    must_fit,
+    read_declaration,
+)
+from rclpy._parameters.rules import ON_TYPE_MISMATCH, follow_policy
 from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.client import Client
 from rclpy.clock import Clock, ROSClock
@@ -44,10 +49,10 @@ from rclpy.exceptions import (
 from rclpy.executors import Executor
 from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
+from rclpy.impl.blocking import wait_for_graph
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.lending import lend
 from rclpy.impl.messages import cleaned, wrong_return
-from rclpy.impl.waiting import wait_for_graph
+from rclpy.impl.reexports import reexport
 from rclpy.logging import get_logger
 from rclpy.logging_service import LoggingService
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
@@ -85,7 +90,7 @@ if TYPE_CHECKING:
         ViewsT,
     )
 else:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 # Programs import what nodes deal in from here as well.
 __all__ = [

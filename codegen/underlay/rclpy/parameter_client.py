@@ -18,8 +18,8 @@ from rcl_interfaces.srv import (
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.impl.blocking import wait_for_graph
 from rclpy.impl.messages import cleaned
-from rclpy.impl.waiting import wait_for_graph
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
 from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default

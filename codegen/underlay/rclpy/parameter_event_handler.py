@@ -11,7 +11,7 @@ from rcl_interfaces.msg import ParameterEvent
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.impl.lending import lend
+from rclpy.impl.reexports import reexport
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 _UNKNOWN = "Callback doesn't exist"
 

@@ -11,7 +11,7 @@ from collections.abc import Callable, Coroutine, Generator, Mapping, Sequence
 from enum import Enum
 from typing import TYPE_CHECKING, Any
 
-from rclpy.impl import sync_calls, typed
+from rclpy.impl import blocking, typed
 from rclpy.impl.typed import Generic, T
 
 if TYPE_CHECKING:
@@ -222,8 +222,8 @@ class Task(_FutureOf[T]):
         try:
             if self._state is _PENDING:
                 self._executing = True
-                if sync_calls.enabled:
-                    with sync_calls.inside_callback(self._executor(), self._entity):
+                if blocking.enabled:
+                    with blocking.inside_callback(self._executor(), self._entity):
                         self._step()
                 else:
                     self._step()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
-from rclpy.impl.lending import lend
+from rclpy.impl.reexports import reexport
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 CLOCK_TOPIC = "/clock"
 USE_SIM_TIME_NAME = "use_sim_time"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
-from rclpy.impl.lending import lend
+from rclpy.impl.reexports import reexport
 from rclpy.qos import HistoryPolicy as _HistoryPolicy
 from rclpy.qos import QoSPresetProfiles, QoSProfile
 from rclpy.type_hash import TypeHash
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 
 class TopicEndpointTypeEnum(IntEnum):

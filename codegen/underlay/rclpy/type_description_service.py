@@ -6,7 +6,7 @@ import weakref
 from typing import TYPE_CHECKING, Any
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.lending import lend
+from rclpy.impl.reexports import reexport
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_services_default
 from rclpy.service import Service
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
 

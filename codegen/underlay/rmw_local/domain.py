@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from rmw_local.reader import Reader
     from rmw_local.service import ServiceEndpoint
     from rmw_local.statistics import Meter, Statistics
+    from rmw_local.transports.discovery import Discovery
     from rmw_local.transports.link import Link
-    from rmw_local.transports.reach import Reach
     from rmw_local.writer import Writer
 
 
@@ -44,12 +44,12 @@ class Domain:
         self.topics: dict[str, Topic] = {}
         self.services: dict[str, ServiceName] = {}
         self.changed = GraphSource()
-        self.reach: Reach | None = None  # the way to other processes, once there is a node
+        self.discovery: Discovery | None = None  # the way to other processes, once there is a node
         self.link: Link | None = None  # while there are other processes
         self.meters: WeakSet[Meter] = WeakSet()  # changed and read with the lock held
         self.statistics: Statistics | None = None  # once somebody has asked
         self._is_apart = False  # whether others know that it has a clock of its own
-        self._forsaken: deque[Callable[[], None]] = deque()
+        self._pending: deque[Callable[[], None]] = deque()
 
     @classmethod
     def numbered(cls, number: int) -> Domain:
@@ -57,37 +57,39 @@ class Domain:
         with cls._creation:
             return cls._domains.setdefault(number, cls(number))
 
-    def forsake(self, close: Callable[[], None]) -> None:
+    def close_later(self, close: Callable[[], None]) -> None:
         """Have something closed that was collected as garbage: later, since a collector may hold any lock."""
-        self._forsaken.append(close)
+        self._pending.append(close)
 
-    def bury(self) -> None:
-        """Close what was forsaken. Called before looking at the graph or changing it, with no lock held."""
-        while self._forsaken:
+    def close_pending(self) -> None:
+        """Close what is pending. Called before looking at the graph or changing it, with no lock held."""
+        while self._pending:
             try:
-                close = self._forsaken.popleft()
+                close = self._pending.popleft()
             except IndexError:  # another thread was faster
                 return
             close()
 
     def reach_out(self) -> None:
         """Look for other processes, and let them find this one."""
-        if self.reach is None:
-            from rmw_local.transports.reach import Reach  # late: not where everything stays in the process
+        if self.discovery is None:
+            from rmw_local.transports.discovery import (
+                Discovery,  # late: not where everything stays in the process
+            )
 
             with self._creation:
-                begins = self.reach is None
-                self.reach = self.reach or Reach(self)
+                begins = self.discovery is None
+                self.discovery = self.discovery or Discovery(self)
             if begins:
-                self.reach.begin()
+                self.discovery.begin()
 
     def stay_apart(self) -> None:
         """Say that other processes are not reached, because of a virtual clock, if there are any."""
         if not self._is_apart:
-            from rmw_local.transports.reach import Reach  # late: as above
+            from rmw_local.transports.discovery import Discovery  # late: as above
 
             self._is_apart = True
-            Reach(self).stay_apart()
+            Discovery(self).stay_apart()
 
     def topic(self, name: str) -> Topic:
         """Return the topic, a new one if it has no endpoint yet. Called with the lock held."""

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
+import ctypes
 import itertools
 import os
 from collections.abc import Iterable
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, ClassVar, Final, TypeAlias
 
 from rmw_local import observer, timing
-from rmw_local.allocator import keep_freed_memory
 from rmw_local.domain import Domain, endpoints
 from rmw_local.qos import INFINITE, TRANSIENT_LOCAL, resolve_offered, resolve_requested
 from rmw_local.reader import LifespanReader, Reader, UnboundedLifespanReader, UnboundedReader
@@ -36,6 +37,14 @@ _READERS: Final[dict[tuple[bool, bool], type[Reader]]] = {
 }
 
 
+# For glibc's allocator: where it gives large blocks back at once, an image of 1 MB pays for 450 page faults,
+# 0.9 ms instead of 0.04 ms.
+_M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
+_KEPT: Final = 64 << 20  # bytes of free memory kept at the end of the heap
+_LARGEST: Final = 32 << 20  # bytes; glibc allows no more
+_MALLOC_SETTINGS: Final = ("MALLOC_TRIM_THRESHOLD_", "MALLOC_MMAP_THRESHOLD_", "GLIBC_TUNABLES")
+
+
 def range_is_off() -> bool:
     """Whether ROS_AUTOMATIC_DISCOVERY_RANGE says that nobody is to be found."""
     return os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE") == "OFF"
@@ -58,7 +67,7 @@ class Participant:
     writers: tuple[type[Writer], type[Writer]] = Writer, DurableWriter
 
     def __init__(self, domain_id: int) -> None:
-        keep_freed_memory()
+        _keep_freed_memory()
         self.domain = Domain.numbered(domain_id)
         self._is_alone = range_is_off()
         self.keeps_to_itself = self._is_alone or not isinstance(timing.driver, timing.SystemDriver)
@@ -88,7 +97,7 @@ class Participant:
 
     def leave(self) -> None:
         """Take all nodes and endpoints out of the graph that are still there."""
-        self.domain.bury()
+        self.domain.close_pending()
         with self.domain.lock:
             nodes = [node for node in self.domain.nodes if node.participant is self]
             mine = [each for each in endpoints(self.domain) if each.node.participant is self]
@@ -154,7 +163,7 @@ class GraphNode:
     def create_writer(self, message_type: MessageType, topic: str, qos: QosProfile) -> Writer:
         """Join a topic as publisher; raises TypeConflictError."""
         domain = self.participant.domain
-        domain.bury()
+        domain.close_pending()
         with domain.lock:
             self.participant.claim(topic, message_type.name)
             place = domain.topic(topic)
@@ -169,7 +178,7 @@ class GraphNode:
     def create_reader(self, message_type: MessageType, topic: str, qos: QosProfile) -> Reader:
         """Join a topic as subscriber; raises TypeConflictError."""
         domain = self.participant.domain
-        domain.bury()
+        domain.close_pending()
         with domain.lock:
             self.participant.claim(topic, message_type.name)
             place = domain.topic(topic)
@@ -242,7 +251,7 @@ class GraphNode:
 
     def _join_service(self, endpoint: ServiceEndpoint) -> None:
         domain = self.participant.domain
-        domain.bury()
+        domain.close_pending()
         with domain.lock:
             self.participant.claim(request_topic(endpoint.name), endpoint.service_type.name)
             domain.service(endpoint.name).add(endpoint)
@@ -270,10 +279,10 @@ class GraphNode:
 
         encounters, newcomer.encounters = newcomer.encounters, ()
         tell_of(each for each in encounters if not each.crosses_processes)
-        far = [each for each in encounters if each.crosses_processes]
+        remote = [each for each in encounters if each.crosses_processes]
         link = self.participant.domain.link
-        if far and link is not None:
-            link.attend_to(far)
+        if remote and link is not None:
+            link.attend_to(remote)
 
     def _renounce(self, entity: Entity, changed: Iterable[ReadySource]) -> None:
         link = self.participant.domain.link
@@ -309,3 +318,14 @@ def _record_unread(name: str, unread: int) -> None:
     watching = observer.current()
     if watching is not None and unread:
         watching.undelivered(name, unread, "never read")
+
+
+@cache
+def _keep_freed_memory() -> None:
+    """Let glibc keep freed memory for the next large message, unless the user has set it otherwise."""
+    if os.name != "posix" or any(name in os.environ for name in _MALLOC_SETTINGS):
+        return
+    with contextlib.suppress(AttributeError, OSError):  # no glibc
+        mallopt = ctypes.CDLL(None).mallopt
+        mallopt(_M_TRIM_THRESHOLD, _KEPT)
+        mallopt(_M_MMAP_THRESHOLD, _LARGEST)

@@ -7,11 +7,11 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
 from rmw_local import observer, timing
-from rmw_local.endpoint import Endpoint
 from rmw_local.notices import say
 from rmw_local.qos import INFINITE
 from rmw_local.ready import ReadySource
 from rmw_local.status import DeadlineStatus, LivelinessChangedStatus, Status
+from rmw_local.topic import Endpoint
 
 if TYPE_CHECKING:
     from rmw_local.graph import GraphNode

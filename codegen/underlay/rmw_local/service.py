@@ -12,11 +12,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from rmw_local import observer, timing
-from rmw_local.endpoint import Ends
 from rmw_local.message import DecodeError
 from rmw_local.notices import no_response
 from rmw_local.qos import mismatch
 from rmw_local.ready import ReadySource
+from rmw_local.topic import Ends
 
 if TYPE_CHECKING:
     from rmw_local.graph import GraphNode
@@ -149,12 +149,12 @@ class ServiceClient(ServiceEndpoint):
         if servers is None:
             servers = self._copy_servers()
         if servers:
-            far = {server.kind.type_hash for server in servers if server.is_remote}
-            self._unanswered[number] = servers, len(far)
+            definitions = {server.kind.type_hash for server in servers if server.is_remote}
+            self._unanswered[number] = servers, len(definitions)
             for server, end in servers.items():
                 if not server.is_remote:
                     end.accept(letter)
-            if far and self.beyond is not None:
+            if definitions and self.beyond is not None:
                 self.beyond(letter, servers)  # once, for all of them
         elif expects_server:
             self._failures.append((number, no_response(self.name, ["the action server"], "")))

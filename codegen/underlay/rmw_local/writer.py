@@ -8,11 +8,10 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Protocol
 
 from rmw_local import observer, timing
-from rmw_local.endpoint import Endpoint
-from rmw_local.liveliness import Lease
 from rmw_local.mismatch.passage import Marking
 from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC, RELIABLE
-from rmw_local.status import DeadlineStatus, LivelinessLostStatus
+from rmw_local.status import DeadlineStatus, Lease, LivelinessLostStatus
+from rmw_local.topic import Endpoint
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
     from rmw_local.reader import Reader, Sample
 
 
-class Outlet(Protocol):
+class RemoteSink(Protocol):
     """All readers of one writer that are in other processes: they get what it publishes, sent once."""
 
     def accept(self, sample: Sample) -> None:
@@ -56,10 +55,12 @@ class Writer(Endpoint):
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         super().__init__(node, message_type, topic, qos)
-        self.readers: tuple[Reader | Marking | Outlet, ...] = ()  # what messages are delivered to
-        self.near: tuple[Reader, ...] = ()  # the matched ones of this process; replaced, never changed
-        self.far: dict[Reader, int] = {}  # those elsewhere, and the last message that each does not get
-        self.outlet: Outlet | None = None  # the way to other processes, while there are any
+        self.readers: tuple[Reader | Marking | RemoteSink, ...] = ()  # what messages are delivered to
+        # The matched readers of this process (replaced, never changed), and those elsewhere with the last
+        # message that each does not get.
+        self.local_readers: tuple[Reader, ...] = ()
+        self.remote_readers: dict[Reader, int] = {}
+        self.remote_sink: RemoteSink | None = None  # the way to other processes, while there are any
         # Whether somebody there listens, announced or not, as tools do that know keys only
         self.is_heard = False
         self._marking: dict[Reader, Marking] = {}  # the stand-ins; replaced, never changed
@@ -67,19 +68,19 @@ class Writer(Endpoint):
         self.deadline = DeadlineStatus(qos.deadline) if qos.deadline < INFINITE else None
         self._manual = qos.liveliness == MANUAL_BY_TOPIC
         self.liveliness_lost = LivelinessLostStatus(qos.liveliness_lease_duration, manual=self._manual)
-        self._leases: dict[Reader, Lease] = {}  # of near readers that want to know; replaced, never changed
+        self._leases: dict[Reader, Lease] = {}  # of local readers that want to know; replaced, never changed
         self._timed = self.deadline is not None or self._manual
         self._numbers = itertools.count(1)
         self.last_number = 0  # of what it has published
         # How to serialise for these readers: one thing, so that no other reader gets what was made for one.
-        self._route: tuple[Callable[[Any], Any], tuple[Reader | Marking | Outlet, ...]]
+        self._route: tuple[Callable[[Any], Any], tuple[Reader | Marking | RemoteSink, ...]]
         self._route = (message_type.serialize, ())
         self._observer = observer.current()
 
     @property
     def matches(self) -> list[Reader]:
-        """The matched readers now: those in other processes, too, which share the outlet."""
-        return [*self.near, *self.far]
+        """The matched readers now: those in other processes, too, which share the sink."""
+        return [*self.local_readers, *self.remote_readers]
 
     def publish(self, message: Any) -> None:
         """Deliver a message of the writer's class; refuses field values that cannot be sent, read or not."""
@@ -90,7 +91,7 @@ class Writer(Endpoint):
         """Deliver a serialised message of the writer's class."""
         self._deliver(data, self.readers)
 
-    def _deliver(self, data: Any, readers: tuple[Reader | Marking | Outlet, ...]) -> None:
+    def _deliver(self, data: Any, readers: tuple[Reader | Marking | RemoteSink, ...]) -> None:
         if self._timed:
             self._note_publication()
         now = timing.time_ns()
@@ -111,17 +112,17 @@ class Writer(Endpoint):
         """Say that the writer lives, for one more lease."""
         if self._manual:
             self.sign_leases()
-            if self.outlet is not None:
-                self.outlet.assert_alive()
+            if self.remote_sink is not None:
+                self.remote_sink.assert_alive()
 
     def wait_until_received(self, patience: int) -> bool:
         """Wait until reliable readers have everything, for `patience` [ns]; returns whether they have.
 
         Those in this process have everything when publishing returns.
         """
-        if self.outlet is None or self.qos.reliability != RELIABLE:
+        if self.remote_sink is None or self.qos.reliability != RELIABLE:
             return True
-        return self.outlet.wait_until_received(self, patience)
+        return self.remote_sink.wait_until_received(self, patience)
 
     def sign_leases(self) -> None:
         """Note a sign of life."""
@@ -131,8 +132,8 @@ class Writer(Endpoint):
     def connect(self, reader: Reader, origin: Origin | None = None) -> None:
         """Deliver to one more reader, marked with an origin. Called with the domain's lock held."""
         if reader.is_remote:
-            self.far[reader] = self._last_before(reader)
-            if len(self.far) == 1:
+            self.remote_readers[reader] = self._last_before(reader)
+            if len(self.remote_readers) == 1:
                 self.settle_route()
             return
         patience = reader.qos.liveliness_lease_duration
@@ -142,19 +143,19 @@ class Writer(Endpoint):
                 reader.liveliness_changed.watch(lease)
             self._leases = {**self._leases, reader: lease}
         self.receiver(reader, origin)
-        self.near = (*self.near, reader)
+        self.local_readers = (*self.local_readers, reader)
         self.settle_route()
 
-    def attach(self, outlet: Outlet | None) -> None:
-        """Deliver to other processes by this outlet from now on. Called with the domain's lock held."""
-        self.outlet = outlet
-        for reader in self.far:
-            self.far[reader] = self._last_before(reader)
+    def attach(self, sink: RemoteSink | None) -> None:
+        """Deliver to other processes by this sink from now on. Called with the domain's lock held."""
+        self.remote_sink = sink
+        for reader in self.remote_readers:
+            self.remote_readers[reader] = self._last_before(reader)
         self.settle_route()
 
     def detach_in_fork(self) -> None:
         """Deliver to other processes no longer, whoever held a lock when the process was forked."""
-        self.outlet = None
+        self.remote_sink = None
         self.settle_route()
 
     def _last_before(self, reader: Reader) -> int:
@@ -172,16 +173,16 @@ class Writer(Endpoint):
 
     def reaches(self, reader: Reader) -> bool:
         """Whether it delivers to a reader."""
-        return reader in (self.far if reader.is_remote else self.near)
+        return reader in (self.remote_readers if reader.is_remote else self.local_readers)
 
     def disconnect(self, reader: Reader) -> None:
         """Deliver to a reader no longer. Called with the domain's lock held."""
         if reader.is_remote:
-            del self.far[reader]
-            if not self.far:
+            del self.remote_readers[reader]
+            if not self.remote_readers:
                 self.settle_route()
             return
-        self.near = tuple(known for known in self.near if known is not reader)
+        self.local_readers = tuple(known for known in self.local_readers if known is not reader)
         self.settle_route()
         if reader in self._marking:
             self._marking = {each: known for each, known in self._marking.items() if each is not reader}
@@ -193,16 +194,16 @@ class Writer(Endpoint):
 
     def settle_route(self) -> None:
         """Choose how to serialise for the readers that there are now. Called with the domain's lock held."""
-        near = tuple(map(self.receiver, self.near))
+        local = tuple(map(self.receiver, self.local_readers))
         kind = self.message_type
         serialize = kind.serialize
-        is_wanted = self._keeps or self.is_heard or self.far
-        if self.outlet is not None and is_wanted:
-            self.readers = (*near, self.outlet)
+        is_wanted = self._keeps or self.is_heard or self.remote_readers
+        if self.remote_sink is not None and is_wanted:
+            self.readers = (*local, self.remote_sink)
         else:
-            self.readers = near
-            if len(near) == 1 and not self._keeps:
-                (reader,) = near
+            self.readers = local
+            if len(local) == 1 and not self._keeps:
+                (reader,) = local
                 if not isinstance(reader, Marking) and reader.takes_parcels and reader.message_type is kind:
                     serialize = kind.pack
         self._route = serialize, self.readers
@@ -236,7 +237,7 @@ class DurableWriter(Writer):
         self._lock = threading.Lock()
         self._history: deque[Sample] = deque(maxlen=qos.queue_length)
 
-    def _deliver(self, data: Any, readers: tuple[Reader | Marking | Outlet, ...]) -> None:
+    def _deliver(self, data: Any, readers: tuple[Reader | Marking | RemoteSink, ...]) -> None:
         """Keep and deliver, to whoever is there once the lock is held."""
         if self._timed:
             self._note_publication()
@@ -258,12 +259,12 @@ class DurableWriter(Writer):
                 self._replay(self.receiver(reader, origin))
             super().connect(reader, origin)
 
-    def attach(self, outlet: Outlet | None) -> None:
-        """Give the outlet what is kept: it replays that to transient local readers in other processes."""
+    def attach(self, sink: RemoteSink | None) -> None:
+        """Give the sink what is kept: it replays that to transient local readers in other processes."""
         with self._lock:
-            if outlet is not None:
-                self._replay(outlet)
-            super().attach(outlet)
+            if sink is not None:
+                self._replay(sink)
+            super().attach(sink)
 
     def detach_in_fork(self) -> None:
         """Deliver to other processes no longer."""
@@ -275,7 +276,7 @@ class DurableWriter(Writer):
         is_owed = self._history and reader.qos.durability == self.qos.durability
         return self._history[0][2] - 1 if is_owed else self.last_number
 
-    def _replay(self, reader: Reader | Marking | Outlet) -> None:
+    def _replay(self, reader: Reader | Marking | RemoteSink) -> None:
         born_after = timing.time_ns() - self.qos.lifespan
         for sample in self._history:
             if sample[1] > born_after:

@@ -14,11 +14,9 @@ from hypothesis import strategies as st
 from ifgen_runtime.parameter_scalars import read_scalar
 from rclpy.impl.rcl import names
 from rclpy.impl.rcl.arguments import Arguments, parse_arguments, rclpy_remove_ros_args
-from rclpy.impl.rcl.errors import RCLError, UnknownROSArgsError
-from rclpy.impl.rcl.lexer import RuleError
-from rclpy.impl.rcl.parameter_files import read_file
-from rclpy.impl.rcl.parameters import ParameterOverrides, parse_override_rule
-from rclpy.impl.rcl.remapping import parse_remap_rule, remapped_topic
+from rclpy.impl.rcl.handle import RCLError, UnknownROSArgsError
+from rclpy.impl.rcl.parameters import ParameterOverrides, parse_override_rule, read_file
+from rclpy.impl.rcl.rules import RuleError, parse_remap_rule, remapped_topic
 
 RULE_PIECES = st.sampled_from(
     ["a", "b_", "_c", "__", "__ns", "__node", "/", "~/", ":", ":=", ".", "*", "**", "rostopic://", "rosservice://", "\\1", "1", " ", "é"]

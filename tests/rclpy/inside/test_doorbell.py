@@ -14,9 +14,8 @@ from pathlib import Path
 
 import pytest
 from ifgen_runtime import neighbours
-from rmw_local.transports import doorbell
+from rmw_local.transports import TransportError, doorbell
 from rmw_local.transports.doorbell import Doorbell
-from rmw_local.transports.errors import TransportError
 
 if not doorbell.IS_POSSIBLE:
     pytest.skip("this system has no sockets with names in a folder", allow_module_level=True)
@@ -277,6 +276,6 @@ def test_a_disk_that_takes_nothing_is_one_error(options: str, words: str, tmp_pa
     if "unshare:" in run.stderr or "mount:" in run.stderr:
         pytest.skip(run.stderr.strip())
     assert run.stderr.splitlines()[-1].startswith(
-        f"rmw_local.transports.errors.TransportError: {tmp_path}/ifgen-0"
+        f"rmw_local.transports.TransportError: {tmp_path}/ifgen-0"
     ) or (f"no socket can be made in {tmp_path}/ifgen-0/7" in run.stderr)
     assert words in run.stderr

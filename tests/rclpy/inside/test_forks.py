@@ -16,7 +16,7 @@ import pytest
 import rclpy
 import rmw_local
 from rclpy.impl import program
-from rclpy.impl.rcl import destroyable
+from rclpy.impl.rcl import handle
 from rmw_local.domain import Domain
 
 if not hasattr(os, "fork"):
@@ -29,7 +29,7 @@ NOT_OF_THREADS = (
     "rmw_local.lockstep.",
     "rmw_local.cooperative",
     "ifgen_runtime.views",
-    "rmw_local.transports.reach",
+    "rmw_local.transports.discovery",
 )
 
 
@@ -51,7 +51,7 @@ def _locks(node: rclpy.node.Node) -> dict[str, Any]:
         "/rosout": here.rosout.lock,
         "its writer": here.rosout.writers["parent"]._lock,
         "logging": rclpy.context.g_logging_configure_lock,
-        "handles": destroyable._ending,
+        "handles": handle._ending,
         "domains": Domain._creation,
         "the domain": domain.lock,
     }
@@ -128,7 +128,7 @@ def _late_imports(path: Path) -> Iterator[str]:
 def test_all_that_threads_of_a_transport_import_late_is_loaded_before_a_fork(
     node: rclpy.node.Node, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from rmw_local.transports import reach
+    from rmw_local.transports import discovery
 
     late = {
         name for path in ROOM.rglob("*.py") if "lockstep" not in path.parts for name in _late_imports(path)
@@ -136,17 +136,17 @@ def test_all_that_threads_of_a_transport_import_late_is_loaded_before_a_fork(
     wanted = {name for name in late if not name.startswith(NOT_OF_THREADS)}
     assert "rmw_local.transports.link" in wanted
     loaded: list[str] = []
-    monkeypatch.setattr(reach, "import_module", loaded.append)
-    monkeypatch.setattr(reach.Reach, "all", [object()])
-    reach._load()
+    monkeypatch.setattr(discovery, "import_module", loaded.append)
+    monkeypatch.setattr(discovery.Discovery, "all", [object()])
+    discovery._load()
     assert wanted <= set(loaded)
 
 
 def test_a_program_that_reaches_nobody_loads_nothing_before_a_fork(monkeypatch: pytest.MonkeyPatch) -> None:
-    from rmw_local.transports import reach
+    from rmw_local.transports import discovery
 
     loaded: list[str] = []
-    monkeypatch.setattr(reach, "import_module", loaded.append)
-    monkeypatch.setattr(reach.Reach, "all", [])
-    reach._load()
+    monkeypatch.setattr(discovery, "import_module", loaded.append)
+    monkeypatch.setattr(discovery.Discovery, "all", [])
+    discovery._load()
     assert loaded == []

@@ -21,7 +21,7 @@ from ifgen_runtime.mismatch.sides import Mismatch, Side
 from ifgen_runtime.type_description import describe
 from rmw_local.qos import KEEP_LAST, QosProfile
 from rmw_local.transports.asking import Asker, Question
-from rmw_local.transports.seam import Entity, Kind
+from rmw_local.transports.interface import Entity, Kind
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool
 from type_description_interfaces.msg import TypeDescription

@@ -145,7 +145,7 @@ def test_whatever_comes_is_refused_or_read(
         lambda sample: transport._on_reply(got, gid, sample),
         transport._calls._on_process,
         transport._calls._on_message,
-        transport._lending._on_notice,
+        transport._shared_memory._on_notice,
         transport._crowds._on_sample,
         ask_and_hear,
     ]

@@ -15,7 +15,7 @@ import pytest
 from ifgen_pytest.domains import RANGE, own_domain
 from rmw_local.graph import Participant
 from rmw_local.lockstep import LockstepError, run
-from rmw_local.lockstep.channel import Channel
+from rmw_local.lockstep.side import Channel
 from rmw_local.virtual_time import virtual_time
 
 from tests.rclpy.inside import lockstep_programs as programs

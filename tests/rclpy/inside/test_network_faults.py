@@ -11,7 +11,7 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rmw_local import topic
 from rmw_local.message import message_type
-from rmw_local.transports import others, receipts
+from rmw_local.transports import receipts, remote
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool
 
@@ -157,7 +157,7 @@ def test_who_is_elsewhere_does_not_meet_whom_else_is_elsewhere(
 def test_others_cannot_fill_the_graph(
     pair: Pair, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(others, "_MOST_ENTITIES", 20)
+    monkeypatch.setattr(remote, "_MOST_ENTITIES", 20)
     pair.process("one")
     other = pair.process("two").node
     for number in range(50):
@@ -171,8 +171,8 @@ def test_others_cannot_fill_the_graph(
 
 
 def test_who_came_when_there_was_no_room_joins_in_turn(pair: Pair, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(others, "_MOST_ENTITIES", 40)
-    monkeypatch.setattr(others, "_MOST_WAITING", 20)
+    monkeypatch.setattr(remote, "_MOST_ENTITIES", 40)
+    monkeypatch.setattr(remote, "_MOST_WAITING", 20)
     one, other = pair.process("one").node, pair.process("two").node
     publishers = {f"/t{number}": other.create_publisher(String, f"t{number}", 10) for number in range(80)}
     found = pair.processes[0].link.others

@@ -322,8 +322,8 @@ class Ears:
         import zenoh
         from rmw_local.notices import Repeated
         from rmw_local.transports.background import Background
-        from rmw_local.transports.zenoh.lending import Lending
         from rmw_local.transports.zenoh.presence import Gate
+        from rmw_local.transports.zenoh.shared_memory import SharedMemory
 
         config = zenoh.Config()
         for path in ("scouting/multicast/enabled", "scouting/gossip/enabled"):
@@ -331,10 +331,12 @@ class Ears:
         config.insert_json5("listen/endpoints", "[]")
         self.session = zenoh.open(config)
         self.malformed = Repeated("{count} malformed{s}: {why}")
-        self.lending = Lending(self.session, Gate(), Background(), 7, self.malformed, is_private=True)
+        self.shared_memory = SharedMemory(
+            self.session, Gate(), Background(), 7, self.malformed, is_private=True
+        )
         self.heard: list[tuple[str, bytes, int]] = []
         for gid, key in ((CAMERA_GID, CAMERA), (COMMAND_GID, COMMAND)):
-            self.lending.listen(
+            self.shared_memory.listen(
                 gid, key, lambda data, number, *_, k=key: self.heard.append((k, data, number))
             )
         self.id = str(self.session.zid())
@@ -342,12 +344,12 @@ class Ears:
     def notice(self, payload: bytes, key: str = "", owner: str = "aa") -> None:
         """Hear of a loan, whoever says so."""
         key = f"{key or CAMERA}/ifgen_memory/{self.id}/{owner}"
-        self.lending._on_notice(cast("Any", SimpleNamespace(key_expr=key, payload=Payload(payload))))
+        self.shared_memory._on_notice(cast("Any", SimpleNamespace(key_expr=key, payload=Payload(payload))))
 
     def close(self) -> None:
-        self.lending.finish()
+        self.shared_memory.finish()
         self.session.close()
-        self.lending.close()
+        self.shared_memory.close()
 
 
 class Payload(bytes):
@@ -369,10 +371,10 @@ def ears(pool: Pool) -> Iterator[Ears]:
 
 
 def packed(loan: Loan | None, place: int = 0, *gids: bytes) -> bytes:
-    from rmw_local.transports.zenoh import lending
+    from rmw_local.transports.zenoh import shared_memory
 
     assert loan is not None
-    return lending.pack(loan, place, list(gids or (CAMERA_GID,)))
+    return shared_memory.pack(loan, place, list(gids or (CAMERA_GID,)))
 
 
 def test_a_notice_is_believed_as_far_as_the_table_of_the_file_says_so(
@@ -489,7 +491,7 @@ def test_what_is_no_file_is_not_opened(pool: Pool, borrower: Borrower, tmp_path:
         with socket.socket(socket.AF_UNIX) as bound:
             bound.bind(str(path))
     assert borrower.read("bb", Forged.loan, 0) is None
-    assert not pool.is_near("bb")
+    assert not pool.can_read("bb")
 
 
 def test_a_file_that_shrinks_is_not_read_beyond_its_end(pool: Pool, borrower: Borrower) -> None:
@@ -573,8 +575,8 @@ def test_only_files_of_dead_processes_are_removed(pool: Pool, tmp_path: Path) ->
     (folder / "dead").write_bytes(b"left")
     other = Pool("bb", 1 << 20)
     assert names(folder) == {"aa", "bb"}
-    other.bury("aa")
-    assert other.is_near("aa")
+    other.remove_orphan("aa")
+    assert other.can_read("aa")
     child = os.fork()
     if not child:
         os._exit(0 if pool._file == -1 and pool._memory is None else 1)
@@ -594,7 +596,7 @@ def test_a_message_that_is_still_on_its_way_is_there_when_its_publisher_ends(
     end.start()
     assert borrower.read("aa", loan, 0) == (b"", b"last words")
     end.join()
-    assert not pool.is_near("aa")
+    assert not pool.can_read("aa")
 
 
 def test_serialised_messages_take_the_same_way(pair: Pair) -> None:

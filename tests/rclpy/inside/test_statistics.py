@@ -98,7 +98,7 @@ def alone() -> Any:
     """A node whose process is in no network."""
     context = Context()
     domain = Domain.numbered(2000)
-    domain.reach = object()  # type: ignore[assignment]  # nobody is looked for
+    domain.discovery = object()  # type: ignore[assignment]  # nobody is looked for
     context.init(args=[], domain_id=domain.number, initialize_logging=False)
     node = Node("alone", namespace="/here", context=context)
     yield node

@@ -19,7 +19,7 @@ import rclpy
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.duration import Duration
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from rclpy.impl.rcl.log_file import LogFile
+from rclpy.impl.rcl.log_outputs import LogFile
 from rmw_local.virtual_time import START, DeadlockError, virtual_time
 from std_msgs.msg import String
 from std_srvs.srv import Empty

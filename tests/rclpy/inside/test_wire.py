@@ -21,11 +21,11 @@ from rmw_local.qos import (
 )
 from rmw_local.transports import environment
 from rmw_local.transports.environment import Environment
-from rmw_local.transports.seam import Entity, Kind
+from rmw_local.transports.interface import Entity, Kind
 
 pytest.importorskip("xxhash")
 
-from rmw_local.transports.zenoh import attachments, keys, qos_text, receipts, tokens
+from rmw_local.transports.zenoh import attachments, inquiries, tokens
 
 STRING_HASH = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 SET_BOOL_HASH = "RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a"
@@ -37,14 +37,14 @@ TALKER = f"@ros2_lv/0/abc1/0/3/MP/%/%/talker/%chatter/std_msgs::msg::dds_::Strin
 
 def test_data_keys() -> None:
     assert (
-        keys.data_key(7, "/ns1/chatter", "std_msgs/msg/String", STRING_HASH)
+        tokens.data_key(7, "/ns1/chatter", "std_msgs/msg/String", STRING_HASH)
         == f"7/ns1/chatter/std_msgs::msg::dds_::String_/{STRING_HASH}"
     )
     assert (
-        keys.data_key(0, "/add", "std_srvs/srv/SetBool", SET_BOOL_HASH)
+        tokens.data_key(0, "/add", "std_srvs/srv/SetBool", SET_BOOL_HASH)
         == f"0/add/std_srvs::srv::dds_::SetBool_/{SET_BOOL_HASH}"
     )
-    assert keys.data_key(0, "/a", "p/msg/N", "").endswith("/TypeHashNotSupported")
+    assert tokens.data_key(0, "/a", "p/msg/N", "").endswith("/TypeHashNotSupported")
 
 
 @pytest.mark.parametrize(
@@ -69,8 +69,8 @@ def test_qos_texts(text: str, changes: dict[str, int]) -> None:
             **changes,
         }
     )  # type: ignore[arg-type]
-    assert qos_text.write(profile) == text
-    assert qos_text.read(text) == profile
+    assert tokens.write_qos(profile) == text
+    assert tokens.read_qos(text) == profile
 
 
 def test_tokens_and_gids() -> None:
@@ -169,9 +169,9 @@ def test_tokens_of_each_kind(
 
 
 def test_our_own_keys() -> None:
-    assert keys.alive_key(7, "0f" * 16) == f"@ifgen_alive/7/{'0f' * 16}"
-    assert keys.receipts_key(7, "abc1") == "@ifgen_receipts/7/abc1"
-    assert keys.data_key(
+    assert tokens.alive_key(7, "0f" * 16) == f"@ifgen_alive/7/{'0f' * 16}"
+    assert tokens.receipts_key(7, "abc1") == "@ifgen_receipts/7/abc1"
+    assert tokens.data_key(
         0, "/walk/_action/feedback", "demo_msgs/action/Walk_FeedbackMessage", STRING_HASH
     ) == (f"0/walk/_action/feedback/demo_msgs::action::dds_::Walk_FeedbackMessage_/{STRING_HASH}")
 
@@ -302,14 +302,14 @@ def test_any_bytes_are_an_attachment_or_one_error(data: bytes) -> None:
 
 @given(st.binary(max_size=100))
 def test_any_bytes_are_receipts_or_one_error(data: bytes) -> None:
-    _survives(receipts.unpack, data)
+    _survives(inquiries.unpack_receipts, data)
     whole = data[: len(data) // 32 * 32]
-    assert receipts.pack(receipts.unpack(whole)) == whole
+    assert inquiries.pack_receipts(inquiries.unpack_receipts(whole)) == whole
 
 
 @given(st.one_of(st.text(max_size=60), st.text(alphabet="0123456789:,", max_size=40)))
 def test_any_text_is_a_profile_or_one_error(text: str) -> None:
-    _survives(qos_text.read, text)
+    _survives(tokens.read_qos, text)
 
 
 @given(st.text(max_size=200))

@@ -9,8 +9,8 @@ import pytest
 
 pytest.importorskip("zenoh")
 
+from rmw_local.transports import ConfigurationError
 from rmw_local.transports.environment import Environment, read
-from rmw_local.transports.errors import ConfigurationError
 from rmw_local.transports.zenoh.config import configuration
 
 DOOR = "unixsock-stream//tmp/door"

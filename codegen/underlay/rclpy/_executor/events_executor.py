@@ -6,8 +6,7 @@ import traceback
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-from rclpy._executor.callback_runner import CallbackRunner
-from rclpy._executor.tasks import Work
+from rclpy._executor.callback_runner import CallbackRunner, Work
 from rclpy._executor.watch import Watch
 from rclpy._executor.work_finder import Condition, Find, MayExecute, WorkFinder, never
 from rclpy.callback_groups import ReentrantCallbackGroup

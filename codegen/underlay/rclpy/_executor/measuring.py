@@ -11,7 +11,7 @@ from weakref import ref
 from rclpy._executor.callback_runner import CallbackRunner
 
 if TYPE_CHECKING:
-    from rclpy._executor.tasks import Work
+    from rclpy._executor.callback_runner import Work
     from rclpy._executor.watch import Watch
     from rclpy.executors import Executor
 

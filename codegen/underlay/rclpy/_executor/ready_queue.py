@@ -15,11 +15,11 @@ from typing import Any
 
 from rmw_local import timing
 
-from rclpy._executor.inbox import Inbox
 from rclpy._executor.waitable_watch import FixedWaitableWatch, WaitableWatch
 from rclpy._executor.watch import (
     ClientWatch,
     GuardConditionWatch,
+    Inbox,
     ServiceWatch,
     SubscriptionWatch,
     TimerWatch,

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Coroutine, Sequence
 from typing import TYPE_CHECKING, Any
 
-from rclpy._executor.inbox import tells_nobody
-from rclpy._executor.watch import Watch
+from rclpy._executor.watch import Watch, tells_nobody
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 if TYPE_CHECKING:

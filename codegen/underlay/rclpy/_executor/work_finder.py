@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from rmw_local import timing
 
+from rclpy._executor.callback_runner import TaskList, Work
 from rclpy._executor.ready_queue import ReadyQueue
-from rclpy._executor.tasks import TaskList, Work
 from rclpy._executor.watch import Watch
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.utilities import timeout_sec_to_nsec

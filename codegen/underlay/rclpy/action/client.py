@@ -13,16 +13,16 @@ from ifgen_runtime.errors import ServerGoneError
 from rmw_local import timing
 from unique_identifier_msgs.msg import UUID
 
-from rclpy.action._client_goal import ClientGoalHandle as ClientGoalHandle  # noqa: PLC0414 - programs import it from here
+from rclpy.action._goals import ClientGoalHandle as ClientGoalHandle  # noqa: PLC0414 - programs import it from here
 from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
-from rclpy.impl import sync_calls
+from rclpy.impl import blocking
+from rclpy.impl.blocking import wait_for_graph
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.lending import lend
 from rclpy.impl.messages import wrong_class
-from rclpy.impl.rcl.action_goal import key_of
+from rclpy.impl.rcl.action_goals import key_of
+from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import ActionT_co, Generic
-from rclpy.impl.waiting import wait_for_graph
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
 from rclpy.type_support import check_for_type_support
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 ClientGoalHandle.__module__ = __name__  # where programs know it from
 
@@ -192,9 +192,9 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
         return future
 
     def _must_be_answerable(self, instead: str) -> None:
-        """Raise, in strict mode, where waiting for a response would never end; see sync_calls."""
-        if sync_calls.enabled:
-            sync_calls.must_be_answerable(self, f"action '{self._action_name}'", instead)
+        """Raise, in strict mode, where waiting for a response would never end; see `blocking`."""
+        if blocking.enabled:
+            blocking.must_be_answerable(self, f"action '{self._action_name}'", instead)
 
     # Pending requests
 

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalInfo, GoalStatus
 
-from rclpy.action._server_goal import ServerGoalHandle as ServerGoalHandle  # noqa: PLC0414 - programs import it from here
+from rclpy.action._goals import ServerGoalHandle as ServerGoalHandle  # noqa: PLC0414 - programs import it from here
 from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.lending import lend
 from rclpy.impl.logging_severity import LoggingSeverity as _LoggingSeverity
 from rclpy.impl.messages import wrong_return
-from rclpy.impl.rcl.action_goal import key_of
+from rclpy.impl.rcl.action_goals import key_of
 from rclpy.impl.rcutils_logger import RcutilsLogger as _RcutilsLogger
+from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import ActionT_co, Generic
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from rclpy.task import Future
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from rclpy.node import Node
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 ServerGoalHandle.__module__ = __name__  # where programs know it from
 

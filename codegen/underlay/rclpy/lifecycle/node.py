@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from lifecycle_msgs import msg, srv
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
-from rclpy.impl.lending import lend
 from rclpy.impl.messages import wrong_return
+from rclpy.impl.reexports import reexport
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.service import Service
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from rclpy.qos_overriding_options import QoSOverridingOptions
 
 if not TYPE_CHECKING:
-    __getattr__ = lend(__name__)
+    __getattr__ = reexport(__name__)
 
 _SHUTDOWN_FROM = {
     "unconfigured": msg.Transition.TRANSITION_UNCONFIGURED_SHUTDOWN,

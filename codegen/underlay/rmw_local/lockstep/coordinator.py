@@ -17,9 +17,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-from rmw_local.lockstep.channel import Channel
-from rmw_local.lockstep.errors import LockstepError
+from rmw_local.lockstep import LockstepError
 from rmw_local.lockstep.participant import take_part
+from rmw_local.lockstep.side import Channel
 
 if TYPE_CHECKING:
     from rmw_local.lockstep.side import Change

@@ -15,17 +15,17 @@ if TYPE_CHECKING:
     from rmw_local.mismatch.passage import Marking
     from rmw_local.reader import Reader, Sample
     from rmw_local.service import Letter, ServiceEndpoint
-    from rmw_local.writer import Outlet
+    from rmw_local.writer import RemoteSink
 
 
 class HeldWriter(Writer):
     """A writer whose messages reach those who are there when the round ends."""
 
-    _last: tuple[Reader | Marking | Outlet, ...] = ()  # whom it left with messages on their way
+    _last: tuple[Reader | Marking | RemoteSink, ...] = ()  # whom it left with messages on their way
 
     def settle_route(self) -> None:
         """Serialise always. Other processes get everything, apart from these readers."""
-        self.readers = tuple(map(self.receiver, self.near))
+        self.readers = tuple(map(self.receiver, self.local_readers))
         self._route = self.message_type.serialize, self.readers
 
     def disconnect(self, reader: Reader) -> None:
@@ -34,14 +34,14 @@ class HeldWriter(Writer):
             self._last = (*self._last, self.receiver(reader))
         super().disconnect(reader)
 
-    def _deliver(self, data: Any, readers: tuple[Reader | Marking | Outlet, ...]) -> None:
+    def _deliver(self, data: Any, readers: tuple[Reader | Marking | RemoteSink, ...]) -> None:
         if self._timed:
             self._note_publication()
         now = timing.time_ns()
         sample = (data, now, next(self._numbers), now)
         _side(self).hold(self.node.full_name, self._arrive, sample)
-        if self.outlet is not None:
-            self.outlet.accept(sample)
+        if self.remote_sink is not None:
+            self.remote_sink.accept(sample)
 
     def _arrive(self, sample: Sample) -> None:
         readers = (*self.readers, *self._last)
@@ -59,8 +59,8 @@ class HeldDurableWriter(HeldWriter, DurableWriter):
             self._history.append(sample)
         super()._arrive(sample)
 
-    def _replay(self, reader: Reader | Marking | Outlet) -> None:
-        if reader is not self.outlet:
+    def _replay(self, reader: Reader | Marking | RemoteSink) -> None:
+        if reader is not self.remote_sink:
             for sample in self._history:
                 if sample[1] > timing.time_ns() - self.qos.lifespan:
                     _side(self).hold(self.node.full_name, reader.accept, sample, is_early=True)

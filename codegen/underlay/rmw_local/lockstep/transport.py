@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from rmw_local.qos import TRANSIENT_LOCAL
-from rmw_local.transports.seam import (
+from rmw_local.transports.interface import (
     Ask,
     Audience,
     Entity,
@@ -60,7 +60,7 @@ def process_of(gid: bytes) -> int:
 
 
 class LockstepTransport:
-    """A `rmw_local.transports.seam.Transport` in one domain of one process."""
+    """A `rmw_local.transports.interface.Transport` in one domain of one process."""
 
     def __init__(self, side: Side, domain: int) -> None:
         self._side = side

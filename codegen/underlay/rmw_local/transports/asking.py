@@ -16,12 +16,12 @@ from ifgen_runtime.mismatch.sides import Definition, definition_from
 from ifgen_runtime.type_description import hash_of
 
 from rmw_local.message import service_type
-from rmw_local.transports.seam import Entity, Kind
+from rmw_local.transports.interface import Entity, Kind
 
 if TYPE_CHECKING:
     from rmw_local.domain import Domain
     from rmw_local.mismatch.encounter import Party
-    from rmw_local.transports.seam import Transport
+    from rmw_local.transports.interface import Transport
 
     Answers = Callable[[], Iterable[bytes]]  # what has come since the last call
 

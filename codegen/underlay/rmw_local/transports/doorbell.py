@@ -15,12 +15,33 @@ import stat
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from ifgen_runtime.neighbours import BELL, COUNT, FOLDER
 
-from rmw_local.transports.errors import TransportError
-from rmw_local.transports.own_folder import own_folder
+from rmw_local.transports import TransportError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+def own_name() -> str:
+    """The name of the user's folders."""
+    return f"ifgen-{os.getuid()}"
+
+
+def own_folder(base: Path) -> Path:
+    """The user's folder in `base`, which nobody else can look into. Raises TransportError."""
+    folder = base / own_name()
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        status = folder.lstat()
+    except OSError as error:
+        raise TransportError(f"{folder} cannot be used: {error.strerror}") from None
+    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o077:
+        raise TransportError(f"{folder} has to be a folder that only its owner, this user, can use")
+    return folder
+
 
 IS_POSSIBLE: Final = hasattr(_socket, "AF_UNIX") and hasattr(os, "getuid")
 """Whether the system has such sockets; Python on Windows has none."""

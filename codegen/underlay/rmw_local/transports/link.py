@@ -22,9 +22,8 @@ from rmw_local.reader import Reader, Sample
 from rmw_local.ready import ReadySource
 from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceServer
 from rmw_local.transports.background import Background
-from rmw_local.transports.others import Others
-from rmw_local.transports.remote import RemoteReader, RemoteWriter
-from rmw_local.transports.seam import Entity, Kind
+from rmw_local.transports.interface import Entity, Kind
+from rmw_local.transports.remote import Adapted, Others, RemoteReader, RemoteWriter
 from rmw_local.transports.services import ShownClient, ShownServer
 from rmw_local.transports.teller import Teller
 from rmw_local.writer import Writer
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     from rmw_local.message import MessageType, ServiceType
     from rmw_local.mismatch.encounter import Encounter
     from rmw_local.qos import QosProfile
-    from rmw_local.transports.seam import Presence, Publication, Receipt, Transport
+    from rmw_local.transports.interface import Presence, Publication, Receipt, Transport
 
 Local = GraphNode | Writer | Reader | ServiceEndpoint
 
@@ -63,7 +62,7 @@ class Link:
         self._transport.acknowledge(self._on_receipts)
         self._transport.offer(self._on_question)
         self._domain.link = self
-        self._domain.bury()
+        self._domain.close_pending()
         with self._domain.lock:
             local: list[Local] = [*self._domain.nodes, *endpoints(self._domain)]
         for entity in local:
@@ -146,8 +145,6 @@ class Link:
                         self._show_again(mine, encounter)
 
     def _show_again(self, mine: Reader | ServiceServer, encounter: Encounter) -> None:
-        from rmw_local.transports.adapted import Adapted  # late: definitions hardly ever differ
-
         type_hash = encounter.theirs.kind.type_hash
         entity = replace(self._described(mine), type_hash=type_hash, stands_in=True)
         presence = self._presences[mine]
@@ -169,7 +166,7 @@ class Link:
         if isinstance(entity, Writer):
             publication = self._transport.publish(self._described(entity), partial(_audience, entity))
             with self._domain.lock:
-                entity.attach(_Outlet(publication))
+                entity.attach(_PublicationSink(publication))
             publication.watch(partial(self._on_listeners, entity))
             return publication
         if isinstance(entity, Reader):
@@ -242,7 +239,7 @@ class Link:
             return []
         return [
             writer.receipt(reader, presence.gid)
-            for reader in writer.near
+            for reader in writer.local_readers
             for presence in (self._presences.get(reader), *self._adapted.get(reader, {}).values())
             if presence is not None
         ]
@@ -268,8 +265,8 @@ class Link:
         reader.accept((data, stamp, number, now))
 
 
-class _Outlet:
-    """A publication as a `rmw_local.writer.Outlet`."""
+class _PublicationSink:
+    """A publication as a `RemoteSink`."""
 
     def __init__(self, publication: Publication) -> None:
         self._put = publication.put
@@ -291,7 +288,11 @@ class _Outlet:
 
 
 def _audience(writer: Writer) -> list[tuple[str, bytes]]:
-    return [(reader.peer, reader.gid) for reader in list(writer.far) if isinstance(reader, RemoteReader)]
+    return [
+        (reader.peer, reader.gid)
+        for reader in list(writer.remote_readers)
+        if isinstance(reader, RemoteReader)
+    ]
 
 
 def _notify(changed: Iterable[ReadySource]) -> None:

@@ -27,8 +27,8 @@ from pathlib import Path
 from typing import Final, NamedTuple
 
 from rmw_local.notices import say
-from rmw_local.transports.errors import TransportError
-from rmw_local.transports.own_folder import own_folder, own_name
+from rmw_local.transports import TransportError
+from rmw_local.transports.doorbell import own_folder, own_name
 
 if sys.platform != "win32":
     import fcntl
@@ -94,10 +94,10 @@ class Pool:
         _open_pools.add(self)
         with suppress(OSError):
             for each in self._folder.iterdir():
-                self.bury(each.name)
+                self.remove_orphan(each.name)
         self.keep()
 
-    def is_near(self, name: str) -> bool:
+    def can_read(self, name: str) -> bool:
         """Whether a session can read this file."""
         try:
             return stat.S_ISREG((self._folder / name).lstat().st_mode)
@@ -130,9 +130,9 @@ class Pool:
             _write(memory, lent.line, line)
         return Loan(ticket, lent.line)
 
-    def bury(self, name: str) -> None:
+    def remove_orphan(self, name: str) -> None:
         """Remove the file of a session whose process was killed."""
-        _bury(self._folder / name)
+        _remove_orphan(self._folder / name)
 
     def close(self) -> None:
         """Remove the file, once what is lent has been read, or a moment later."""
@@ -369,7 +369,7 @@ def _locked_file(path: Path) -> int:
         try:
             file = os.open(path, _EXISTING | os.O_CREAT | os.O_EXCL, 0o600)
         except FileExistsError:
-            _bury(path)
+            _remove_orphan(path)
             continue
         with suppress(OSError):
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -379,7 +379,7 @@ def _locked_file(path: Path) -> int:
     raise TransportError(f"{path} cannot be locked")
 
 
-def _bury(path: Path) -> None:
+def _remove_orphan(path: Path) -> None:
     """Remove a file that no process has locked."""
     with suppress(OSError):
         file = os.open(path, _EXISTING | os.O_NONBLOCK)

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import Final
 
 from rmw_local.qos import RELIABLE
+from rmw_local.transports.interface import Receipt
 from rmw_local.transports.remote import RemoteReader
-from rmw_local.transports.seam import Receipt
 from rmw_local.writer import Writer
 
 _NO_END: Final = 100 * 365 * 86_400.0  # [s]
@@ -21,7 +21,7 @@ _LONGEST_PAUSE: Final = 0.05  # [s]
 _SOON: Final = 0.1  # [s] until a question is asked again, which may have been lost; then twice as long
 
 Ask = Callable[[str, float], list[Receipt] | None]
-"""`rmw_local.transports.seam.Publication.receipts`."""
+"""`rmw_local.transports.interface.Publication.receipts`."""
 
 
 def wait_for_receipts(writer: Writer, ask: Ask, patience: int) -> bool:
@@ -57,7 +57,7 @@ class _Debts:
         self._peers = {
             gid: reader.peer
             for gid, reader in _reliable(writer).items()
-            if writer.far.get(reader, number) < number
+            if writer.remote_readers.get(reader, number) < number
         }
         self._known: dict[bytes, Receipt] = {}
         self._silent: set[str] = set()  # those that did not answer when they were asked last
@@ -102,6 +102,6 @@ def _reliable(writer: Writer) -> dict[bytes, RemoteReader]:
     """The matched reliable readers in other processes, by gid."""
     return {
         reader.gid: reader
-        for reader in list(writer.far)  # at one moment: they come and go meanwhile
+        for reader in list(writer.remote_readers)  # at one moment: they come and go meanwhile
         if isinstance(reader, RemoteReader) and reader.qos.reliability == RELIABLE
     }

@@ -7,20 +7,20 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from rmw_local.mismatch.passage import Converting
 from rmw_local.transports.remote import RemoteServer
 
 if TYPE_CHECKING:
     from rmw_local.mismatch.origin import Origin
-    from rmw_local.mismatch.passage import Converting
     from rmw_local.service import Letter, ServiceClient, ServiceServer
-    from rmw_local.transports.seam import Ask, Entity, OnOver, Serving, Transport
+    from rmw_local.transports.interface import Ask, Entity, OnOver, Serving, Transport
 
 _MOST_REQUESTS: Final = 4096
 """The number of requests of which a server that adapts remembers by which definition they came."""
 
 
 class ShownClient:
-    """A client. It asks all servers under one gid. It is a `rmw_local.transports.seam.Presence`."""
+    """A client. It asks all servers under one gid. It is a `rmw_local.transports.interface.Presence`."""
 
     def __init__(self, client: ServiceClient, entity: Entity, transport: Transport, on_over: OnOver) -> None:
         self._client = client
@@ -39,12 +39,12 @@ class ShownClient:
     def _ask(self, letter: Letter, servers: dict[ServiceServer, Any]) -> None:
         """Send a request once for each definition of the servers that are elsewhere."""
         data, stamp, _, number, *_ = letter
-        far = [(server, end) for server, end in servers.items() if isinstance(server, RemoteServer)]
-        by_hash = {server.kind.type_hash: end for server, end in far}
+        remote = [(server, end) for server, end in servers.items() if isinstance(server, RemoteServer)]
+        by_hash = {server.kind.type_hash: end for server, end in remote}
         own = self._entity.type_hash
         # The own definition is first: a server that adapts, too, takes what comes first.
         if by_hash.pop(own, None) is not None:
-            reached = [(server.peer, server.gid) for server, _ in far if server.kind.type_hash == own]
+            reached = [(server.peer, server.gid) for server, _ in remote if server.kind.type_hash == own]
             self.asking.ask(data, number, stamp, reached)
         for type_hash, server in by_hash.items():
             converted = server.downgraded(data)
@@ -118,8 +118,6 @@ class ShownServer:
 
     def _converting(self, gid: bytes) -> Converting | None:
         """The client with this gid, if it has another definition."""
-        from rmw_local.mismatch.passage import Converting  # late: definitions hardly ever differ
-
         found = self._server.clients.get(gid)
         return found if isinstance(found, Converting) else None
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rmw_local.mismatch.encounter import Encounter
     from rmw_local.transports.asking import Asker
     from rmw_local.transports.background import Background
-    from rmw_local.transports.seam import Transport
+    from rmw_local.transports.interface import Transport
 
 _MOST_UNTOLD: Final = 1000
 """The number of encounters with other definitions that wait to be told of."""

@@ -22,12 +22,11 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rmw_local.domain import Domain
-from rmw_local.lockstep.channel import Channel
-from rmw_local.lockstep.side import Side
+from rmw_local.lockstep.side import Channel, Side
 from rmw_local.lockstep.transport import LockstepTransport
+from rmw_local.transports.discovery import Discovery
 from rmw_local.transports.environment import Environment
 from rmw_local.transports.link import Link
-from rmw_local.transports.reach import Reach
 
 from tests.rclpy.network import Network
 
@@ -76,7 +75,7 @@ class Pair:
     def process(self, name: str) -> Process:
         """One more of them, with a node of this name."""
         domain = Domain.numbered(self._shared if self.kind == "inside" else next(_domains))
-        domain.reach = Reach(domain)  # never begun: nobody else is looked for
+        domain.discovery = Discovery(domain)  # never begun: nobody else is looked for
         context = Context()
         context.init(args=[], domain_id=domain.number, initialize_logging=False)
         node = Node(name, context=context)

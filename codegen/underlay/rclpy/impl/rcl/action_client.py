@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from rmw_local.message import DecodeError, message_type
 
 from .action_entity import ActionEntity
-from .action_status import states
-from .client import Client
-from .errors import RCLError
-from .subscription import Subscription
+from .action_goals import states
+from .handle import RCLError
+from .services import Client
+from .topics import Subscription
 
 if TYPE_CHECKING:
     from .node import Node

@@ -6,14 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 from rmw_local.message import message_type, service_type
 
-from .client import Client
-from .destroyable import Destroyable
-from .errors import RCLError
+from .clock import Timer
+from .handle import Destroyable, RCLError
 from .names import as_c_string, rclpy_get_validation_error_for_full_topic_name
-from .publisher import Publisher
-from .service import Service
-from .subscription import Subscription
-from .timer import Timer
+from .services import Client, Service
+from .topics import Publisher, Subscription
 
 if TYPE_CHECKING:
     from .node import Node
@@ -49,9 +46,8 @@ class ActionEntity(Destroyable):
         message_type(action_type.Impl.FeedbackMessage).action = action_type
         self._parts: list[_Part] = []
         self._waited_for: list[tuple[str, Any]] = []  # (kind, handle) in the order of what `is_ready` returns
-        self._indices: list[
-            tuple[str, int]
-        ] = []  # where they are in the wait set that they were added to last
+        # Their places in the wait set that they were added to last.
+        self._indices: list[tuple[str, int]] = []
 
     @property
     def name(self) -> str:

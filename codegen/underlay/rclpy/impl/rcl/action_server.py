@@ -7,14 +7,12 @@ from collections import deque
 from typing import TYPE_CHECKING, Any
 
 from .action_entity import ActionEntity
-from .action_goal import Goal, GoalEvent, key_of
-from .action_status import StatusArray
-from .clock import Clock
-from .errors import RCLError
-from .publisher import Publisher
-from .service import Service
+from .action_goals import Goal, GoalEvent, StatusArray, key_of
+from .clock import Clock, Timer
+from .handle import RCLError
+from .services import Service
 from .structs import rmw_request_id_t
-from .timer import Timer
+from .topics import Publisher
 
 if TYPE_CHECKING:
     from .node import Node

@@ -5,19 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
-from .errors import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
-from .lexer import Lexeme, Lexer, RuleError
+from .handle import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
+from .logging import (
+    RCUTILS_LOG_SEVERITY,
+    rclpy_logging_rcutils_log,
+    rclpy_logging_severity_level_from_string,
+)
 from .names import rclpy_get_validation_error_for_namespace
-from .parameters import ParameterOverrides, parse_override_rule
-from .remapping import RemapRule, parse_remap_rule
-
-__all__ = [
-    "Arguments",
-    "parse_arguments",
-    "parse_context_arguments",
-    "parse_node_arguments",
-    "rclpy_remove_ros_args",
-]
+from .parameters import ParameterOverrides, parse_override_rule, read_file
+from .rules import Lexeme, Lexer, RemapRule, RuleError, parse_remap_rule
 
 
 @dataclass(slots=True)
@@ -102,8 +98,6 @@ def _warn(text: str) -> None:
 
 
 def _log(severity: str, text: str) -> None:
-    from .logging import RCUTILS_LOG_SEVERITY, rclpy_logging_rcutils_log  # late: logging needs contexts
-
     level = RCUTILS_LOG_SEVERITY[f"RCUTILS_LOG_SEVERITY_{severity}"]
     rclpy_logging_rcutils_log(level, "rcl", text, "", "", 0)
 
@@ -173,14 +167,10 @@ def _take_parameter(result: Arguments, value: str, _: Warn) -> None:
 
 
 def _take_parameter_file(result: Arguments, value: str, _: Warn) -> None:
-    from .parameter_files import read_file  # imports yaml
-
     read_file(value, result.parameters)
 
 
 def _severity(text: str) -> int:
-    from .logging import rclpy_logging_severity_level_from_string  # late: logging needs contexts
-
     try:
         return rclpy_logging_severity_level_from_string(text)
     except RuntimeError:

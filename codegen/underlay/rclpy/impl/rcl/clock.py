@@ -1,4 +1,4 @@
-"""Clocks: system, steady and ROS time, and the callbacks around jumps of ROS time."""
+"""Clocks of system, steady and ROS time, the callbacks around jumps of ROS time, and timers."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ import weakref
 from typing import Protocol, SupportsInt, TypedDict
 
 from rmw_local import timing
+from rmw_local.ready import ReadySource
 
-from .destroyable import Destroyable, Unpicklable
-from .enums import ExtensionEnum
-from .errors import RCLError
+from .context import Context
+from .handle import CONTEXT_NOT_VALID, Destroyable, RCLError, Unpicklable, as_bool
+from .structs import ExtensionEnum
 
 _INT64 = range(-(2**63), 2**63)
 
@@ -101,7 +102,7 @@ class Clock(Destroyable):
         self._override: int | None = None  # [ns] while the override is on
         self._override_value = 0
         self._registrations: tuple[_Registration, ...] = ()
-        self._timers: tuple[weakref.ref[TimerOfClock], ...] = ()  # a WeakSet takes longer to go through
+        self._timers: tuple[weakref.ref[Timer], ...] = ()  # a WeakSet takes longer to go through
         self._changing = threading.RLock()  # one jump at a time; user callbacks run inside, hence reentrant
 
     def now_ns(self) -> int:
@@ -161,7 +162,7 @@ class Clock(Destroyable):
                 raise RCLError("failed to remove time jump callback: jump callback was not found")
             self._registrations = kept
 
-    def attach_timer(self, timer: TimerOfClock) -> None:
+    def attach_timer(self, timer: Timer) -> None:
         """Tell this timer about jumps as long as it lives."""
         with self._changing:
             self._timers = (*(known for known in self._timers if known() is not None), weakref.ref(timer))
@@ -191,22 +192,6 @@ class Clock(Destroyable):
             for registration in told:
                 if callable(registration.handle._post_callback):
                     registration.handle._post_callback({"clock_change": change, "delta": delta})
-
-
-class TimerOfClock(Protocol):
-    """A clock's view of its timers."""
-
-    def before_change(self) -> None:
-        """The clock is about to get another source of time."""
-        ...
-
-    def after_change(self) -> None:
-        """The clock has another source of time."""
-        ...
-
-    def after_jump(self) -> None:
-        """The clock shows another time, from the same source."""
-        ...
 
 
 class ClockEvent:
@@ -246,3 +231,102 @@ class ClockEvent:
                 "failed to subtract times: Cannot difference between time points with clocks types."
             )
         self._event.wait_until(clock.steady_time_of(until.nanoseconds))
+
+
+class Timer(Destroyable, ReadySource):
+    """Ready when its clock shows `next call`; every time and period in ns."""
+
+    def __init__(self, clock: Clock, context: Context, period_ns: int, autostart: bool) -> None:
+        Destroyable.__init__(self)
+        ReadySource.__init__(self)
+        if period_ns < 0:
+            raise RCLError("failed to create timer: timer period must be non-negative")
+        if not context.valid:
+            raise RCLError(f"failed to create timer: {CONTEXT_NOT_VALID}")
+        self._clock = clock
+        self._period = int(period_ns)
+        self._last_call = clock.now_ns()
+        self._next_call = self._last_call + self._period
+        self._credit = 0  # what was left of the period when the source of time changed
+        self._canceled = not as_bool(autostart, "autostart")
+        if clock.type is ClockType.ROS_TIME:
+            clock.attach_timer(self)
+
+    def is_ready(self) -> bool:
+        """Whether the next call is due."""
+        return not self._canceled and not self._destroyed and self._clock.now_ns() >= self._next_call
+
+    def wake_at(self) -> int | None:
+        """The time of the next call [ns, steady]; None if it is stopped."""
+        if self._canceled or self._destroyed:
+            return None
+        return self._clock.steady_time_of(self._next_call)
+
+    def is_timer_ready(self) -> bool:
+        """Whether it may be called."""
+        return self.is_ready()
+
+    def call_timer(self) -> None:
+        """Count as called now: the next call is one period later, or the first such point to come."""
+        if self._canceled:
+            raise RCLError("failed to call timer: timer is canceled")
+        now = self._clock.now_ns()
+        self._last_call = now
+        following = self._next_call + self._period
+        if following <= now:
+            missed = (now - following) // self._period + 1 if self._period else 0
+            following = following + missed * self._period if self._period else now
+        self._next_call = following
+
+    def cancel_timer(self) -> None:
+        """Stop it until `reset_timer`."""
+        self._canceled = True
+
+    def is_timer_canceled(self) -> bool:
+        """Whether it is stopped."""
+        return self._canceled
+
+    def reset_timer(self) -> None:
+        """Start a whole period from now on."""
+        self._next_call = self._clock.now_ns() + self._period
+        self._canceled = False
+        self.notify()
+
+    def get_timer_period(self) -> int:
+        """The period."""
+        return self._period
+
+    def change_timer_period(self, period_ns: int) -> None:
+        """Use another period after the next call."""
+        self._period = period_ns
+
+    def time_since_last_call(self) -> int:
+        """The time since it was called or made."""
+        return self._clock.now_ns() - self._last_call
+
+    def time_until_next_call(self) -> int | None:
+        """The time until it is ready (negative: overdue); None if it is stopped."""
+        return None if self._canceled else self._next_call - self._clock.now_ns()
+
+    def before_change(self) -> None:
+        """Keep what is left of the period when the source of time changes (time 0 is no time yet)."""
+        if (now := self._clock.now_ns()) != 0:
+            self._credit = self._next_call - now
+
+    def after_change(self) -> None:
+        """Apply what was kept."""
+        now = self._clock.now_ns()
+        if now != 0 and (credit := self._credit):
+            self._credit = 0
+            self._next_call = now - credit + self._period
+            self._last_call = now - credit
+        self.notify()
+
+    def after_jump(self) -> None:
+        """After a jump backwards over the last call, start a new period; else see whether it is due."""
+        now = self._clock.now_ns()
+        if now >= self._next_call:
+            self.notify()
+        elif now < self._last_call:
+            self._next_call = now + self._period
+            self._last_call = now

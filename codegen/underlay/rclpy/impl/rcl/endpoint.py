@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TypeVar
 
+from rmw_local.graph import GraphNode, TypeConflictError
+from rmw_local.qos import QosProfile, unknown_policy
 from rmw_local.ready import Listener, ReadySource
 
-from .destroyable import Destroyable
-from .errors import RCLError
-from .names import rclpy_get_validation_error_for_full_topic_name
-
-if TYPE_CHECKING:
-    from .node import Node
+from .handle import Destroyable, RCLError
+from .node import Node
 
 # In upstream's words, which differ.
+_FAILED = {"publisher": "Failed", "subscription": "Failed", "client": "failed", "service": "failed"}
 _INVALID_NAME = {
-    "publisher": "Failed to create {kind} due to invalid topic name '{name}'",
-    "subscription": "Failed to create {kind} due to invalid topic name '{name}'",
-    "client": "failed to create {kind} due to invalid service name '{name}': {reason}",
-    "service": "failed to create {kind} due to invalid topic name '{name}': {reason}",
+    "publisher": "topic name '{name}'",
+    "subscription": "topic name '{name}'",
+    "client": "service name '{name}': {reason}",
+    "service": "topic name '{name}': {reason}",
 }
+_E = TypeVar("_E")
 
 
 class EndpointHandle(Destroyable):
@@ -28,14 +29,34 @@ class EndpointHandle(Destroyable):
 
     _close: Callable[[], None] | None = None
 
-    def _attach(self, node: Node, close: Callable[[], None]) -> None:
-        """Keep what belongs to a living endpoint: its node, and how to close it."""
-        self._node = node
-        self._close = close
+    def _open(
+        self,
+        kind: str,
+        node: object,
+        name: str,
+        profile: QosProfile,
+        create: Callable[[GraphNode, str], _E],
+        close: Callable[[GraphNode, _E], None],
+    ) -> _E:
+        """Join the graph with an endpoint, which the handle closes at its end.
 
-    def _bury(self) -> None:
+        Raises ValueError for a bad name, TypeError for what is no node, RCLError for anything else.
+        """
+        owner, full_name = _resolve(node, name, kind)
+        failure = f"{_FAILED[kind]} to create {kind}"
+        if policy := unknown_policy(profile):
+            raise RCLError(f"{failure}: the {policy} policy is unknown")
+        try:
+            endpoint = create(owner.graph_node, full_name)
+        except TypeConflictError as error:
+            raise RCLError(f"{failure}: create_{kind}() called for {error}") from None
+        self._node = owner
+        self._close = partial(close, owner.graph_node, endpoint)
+        return endpoint
+
+    def _close_pending(self) -> None:
         """Let counterparts that were collected as garbage leave first."""
-        self._node.graph_node.participant.domain.bury()
+        self._node.graph_node.participant.domain.close_pending()
 
     def get_logger_name(self) -> str:
         """Return the name of its node's logger."""
@@ -48,7 +69,7 @@ class EndpointHandle(Destroyable):
     def __del__(self) -> None:
         # A collector may run while this thread holds any lock: closing has to wait until somebody looks.
         if self._close is not None and not self._destroyed:
-            self._node.graph_node.participant.domain.forsake(self._close)
+            self._node.graph_node.participant.domain.close_later(self._close)
 
 
 class SourceHandle(Destroyable, ReadySource):
@@ -90,23 +111,15 @@ class SourceHandle(Destroyable, ReadySource):
         self._source.remove_listeners(unwanted)
 
 
-def resolve(node: object, name: str, kind: str, *, is_service: bool = False) -> tuple[Node, str]:
-    """Return the node and an endpoint's full name.
-
-    Raises ValueError for a bad name, TypeError for what is no node, RCLError in a context that is down.
-    """
-    from .node import Node  # late: nodes have publishers of their own (rosout)
-
+def _resolve(node: object, name: str, kind: str) -> tuple[Node, str]:
+    """Return the node and an endpoint's full name."""
     if not isinstance(node, Node):
         raise TypeError(f"failed to create {kind}: expected a node handle, got {node!r}")
+    failure = f"{_FAILED[kind]} to create {kind}"
     if not node.context.valid:
-        raise RCLError(f"{'f' if is_service else 'F'}ailed to create {kind}: rcl node's context is invalid")
+        raise RCLError(f"{failure}: rcl node's context is invalid")
     try:
-        full_name = node.resolve_name(name, is_service=is_service)
-        fault = rclpy_get_validation_error_for_full_topic_name(full_name)
-        if fault is None:
-            return node, full_name
-        reason = fault[0]
+        return node, node.resolve_name(name, is_service=kind in ("client", "service"))
     except ValueError as error:
-        reason = str(error)
-    raise ValueError(_INVALID_NAME[kind].format(kind=kind, name=name, reason=reason))
+        invalid = _INVALID_NAME[kind].format(name=name, reason=error)
+    raise ValueError(f"{failure} due to invalid {invalid}")

@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from rmw_local.domain import Domain
-from rmw_local.endpoint import Endpoint
 from rmw_local.message import MessageType, service_with_hash
 from rmw_local.qos import HISTORY_UNKNOWN, QosProfile
 from rmw_local.service import ServiceEndpoint
+from rmw_local.topic import Endpoint
 
-from .errors import NodeNameNonExistentError, RCLError
+from .handle import NodeNameNonExistentError, RCLError
 from .names import (
     as_string,
     rclpy_get_validation_error_for_full_topic_name,
@@ -44,7 +44,7 @@ class _Snapshot:
             raise RCLError(f"{failure}: rcl node's context is invalid")
         self.failure = failure
         domain: Domain = node.graph_node.participant.domain
-        domain.bury()
+        domain.close_pending()
         with domain.lock:
             self.nodes = list(domain.nodes)
             topics, services = list(domain.topics.values()), list(domain.services.values())
@@ -266,12 +266,6 @@ def _info(end: _End, endpoint_type: int) -> dict[str, Any]:
     }
 
 
-def whole_profiles(node: Node) -> dict[tuple[int, ...], dict[str, Any]]:
-    """Return the keyword arguments of a QoSProfile for each end of a topic by gid: also what DDS hides."""
-    graph = _Snapshot(node, "Failed to get information about topics")
-    return {tuple(each.gid): profile_dict(each.qos) for each in (*graph.writers, *graph.readers)}
-
-
 def service_types(node: Node, service_name: str) -> list[tuple[str, str, str]]:
     """Return (full name of the node, type, type hash) of each server of a full service name.
 
@@ -283,12 +277,6 @@ def service_types(node: Node, service_name: str) -> list[tuple[str, str, str]]:
         for server in graph.servers
         if server.name == service_name
     ]
-
-
-def service_hashes(node: Node) -> dict[tuple[int, ...], str]:
-    """Return the type hash of the whole service for each server and client by gid."""
-    graph = _Snapshot(node, "Failed to get information about services")
-    return {tuple(each.gid): each.service_type.type_hash for each in (*graph.servers, *graph.clients)}
 
 
 def node_names(node: Node) -> list[tuple[str, str, str]]:
@@ -330,7 +318,7 @@ def _domain_of(node: Node, failure: str, name: str, argument: str) -> Domain:
     if error := rclpy_get_validation_error_for_full_topic_name(name):
         raise RCLError(f"{failure}: {argument} argument is invalid: {error[0]}")
     domain: Domain = node.graph_node.participant.domain
-    domain.bury()
+    domain.close_pending()
     return domain
 
 

@@ -8,15 +8,12 @@ from typing import Any, Final, NamedTuple
 from rmw_local.message import message_type
 from rmw_local.qos import QosProfile
 
-from .destroyable import Destroyable, as_bool
-from .enums import ScopedEnum
-from .errors import RCLError
+from .handle import Destroyable, RCLError, as_bool
 from .logging import RCUTILS_LOG_SEVERITY, rclpy_logging_rcutils_log
 from .node import Node
 from .qos import rmw_qos_profile_t
-from .service import Service
-
-__all__ = ["LifecycleStateMachine", "TransitionCallbackReturnType"]
+from .services import Service
+from .structs import ScopedEnum
 
 _REFUSED: Final = "Failed to trigger lifecycle state machine transition"
 State = tuple[int, str]

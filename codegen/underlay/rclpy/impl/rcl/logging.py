@@ -5,34 +5,20 @@ from __future__ import annotations
 import os
 import threading
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rmw_local import report, timing
 
 from rclpy.impl import program
 from rclpy.impl.messages import cleaned_text
 
-from .console import Console, Line
-from .context import Context
-from .enums import ExtensionEnum
-from .log_file import LogFile
+from .log_outputs import Console, Line, LogFile
 from .names import as_c_string
 from .rosout import publish_to_rosout
 
-__all__ = [
-    "RCUTILS_LOG_SEVERITY",
-    "rclpy_logging_configure",
-    "rclpy_logging_fini",
-    "rclpy_logging_get_logger_effective_level",
-    "rclpy_logging_get_logger_level",
-    "rclpy_logging_get_logging_directory",
-    "rclpy_logging_get_separator_string",
-    "rclpy_logging_initialize",
-    "rclpy_logging_logger_is_enabled_for",
-    "rclpy_logging_rcutils_log",
-    "rclpy_logging_set_logger_level",
-    "rclpy_logging_severity_level_from_string",
-    "rclpy_logging_shutdown",
-]
+if TYPE_CHECKING:
+    from .context import Context
+from .structs import ExtensionEnum
 
 _SEVERITIES = {0: "UNSET", 10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 _INFO = 20

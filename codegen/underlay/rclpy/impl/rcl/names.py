@@ -7,25 +7,9 @@ Names are ASCII by definition; what the C layer would cut at a NUL is cut here a
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
-from .errors import RCLError, RMWError
-
-if TYPE_CHECKING:
-    from .node import Node
-
-__all__ = [
-    "as_c_string",
-    "as_string",
-    "expand_name",
-    "rclpy_expand_topic_name",
-    "rclpy_get_validation_error_for_full_topic_name",
-    "rclpy_get_validation_error_for_namespace",
-    "rclpy_get_validation_error_for_node_name",
-    "rclpy_get_validation_error_for_topic_name",
-    "rclpy_remap_topic_name",
-    "rclpy_resolve_name",
-]
+from .handle import RCLError, RMWError
 
 NameFault = tuple[str, int]
 
@@ -201,28 +185,3 @@ def rclpy_expand_topic_name(topic: str, node_name: str, node_namespace: str) -> 
         return expand_name(topic, node_name, node_namespace)
     except ValueError as error:
         raise ValueError(f"topic name '{topic}' is invalid: {error}") from None
-
-
-def rclpy_resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
-    """The name that an endpoint of `node` called `name` really gets: expanded, then remapped.
-
-    Raises RCLError.
-    """
-    _check_node(node)
-    try:
-        return node.resolve_name(name, only_expand=only_expand, is_service=is_service)
-    except ValueError as error:
-        raise RCLError(f"failed to resolve name: {error}") from None
-
-
-def rclpy_remap_topic_name(node: Node, name: str) -> str:
-    """`name` (absolute) after the topic rules of the node, or unchanged when no rule matches."""
-    _check_node(node)
-    return node.remap_name(as_c_string(name, "failed to remap topic name: name is null"), is_service=False)
-
-
-def _check_node(node: object) -> None:
-    from .node import Node  # late: nodes need names
-
-    if not isinstance(node, Node):
-        raise TypeError(f"expected a node handle, got {node!r}")

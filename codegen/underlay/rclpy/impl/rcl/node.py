@@ -11,8 +11,7 @@ from rmw_local.graph import GraphNode
 from . import graph
 from .arguments import Arguments, parse_node_arguments
 from .context import Context
-from .destroyable import Destroyable, as_bool
-from .errors import RCLError
+from .handle import Destroyable, RCLError, as_bool
 from .names import (
     as_c_string,
     expand_name,
@@ -20,10 +19,8 @@ from .names import (
     rclpy_get_validation_error_for_namespace,
     rclpy_get_validation_error_for_node_name,
 )
-from .remapping import RemapKind, RemapRule, remapped_name, remapped_topic
 from .rosout import rosout_connect
-
-__all__ = ["Node"]
+from .rules import RemapKind, RemapRule, remapped_name, remapped_topic
 
 NamesAndTypes = list[tuple[str, list[str]]]
 
@@ -62,7 +59,7 @@ class Node(Destroyable):
         namespace = remapped_name(self._rules, RemapKind.NAMESPACE, name) or namespace
         if error := rclpy_get_validation_error_for_namespace(namespace):
             raise RCLError(f"error creating node: invalid node namespace: {error[0]}")
-        context.participant.domain.bury()  # a forgotten node of this name is no twin
+        context.participant.domain.close_pending()  # a forgotten node of this name is no twin
         self.graph_node: GraphNode = context.participant.create_node(
             name, namespace, context.arguments.enclave
         )
@@ -80,7 +77,7 @@ class Node(Destroyable):
     def __del__(self) -> None:
         # A collector may run while this thread holds any lock: leaving has to wait until somebody looks.
         if hasattr(self, "_closers") and not self._destroyed:
-            self.graph_node.participant.domain.forsake(partial(_leave, self._closers, self.graph_node))
+            self.graph_node.participant.domain.close_later(partial(_leave, self._closers, self.graph_node))
 
     # Names
 
@@ -193,3 +190,26 @@ def _leave(closers: list[Callable[[], None]], graph_node: GraphNode) -> None:
 def _check(name: str, what: str, error_of: Callable[[str], tuple[str, int] | None]) -> None:
     if error := error_of(name):
         raise ValueError(f"invalid {what}: {error[0]}")
+
+
+def rclpy_resolve_name(node: Node, name: str, only_expand: bool, is_service: bool) -> str:
+    """The name that an endpoint of `node` called `name` really gets: expanded, then remapped.
+
+    Raises RCLError.
+    """
+    _check_node(node)
+    try:
+        return node.resolve_name(name, only_expand=only_expand, is_service=is_service)
+    except ValueError as error:
+        raise RCLError(f"failed to resolve name: {error}") from None
+
+
+def rclpy_remap_topic_name(node: Node, name: str) -> str:
+    """`name` (absolute) after the topic rules of the node, or unchanged when no rule matches."""
+    _check_node(node)
+    return node.remap_name(as_c_string(name, "failed to remap topic name: name is null"), is_service=False)
+
+
+def _check_node(node: object) -> None:
+    if not isinstance(node, Node):
+        raise TypeError(f"expected a node handle, got {node!r}")

@@ -13,10 +13,8 @@ from typing import Final
 
 from ifgen_runtime.parameter_scalars import ParameterVariant, Value, read_scalar
 
-from .lexer import Lexeme, Lexer, RuleError
 from .names import rclpy_get_validation_error_for_namespace, rclpy_get_validation_error_for_node_name
-
-__all__ = ["ParameterOverrides", "parse_override_rule"]
+from .rules import Lexeme, Lexer, RuleError
 
 _WILDCARDS: Final = ("*", "**")
 
@@ -140,3 +138,13 @@ def _parameter_name(lexer: Lexer) -> str:
     name = lexer.text[start : lexer.position]
     lexer.accept()
     return name
+
+
+def read_file(path: str, overrides: ParameterOverrides) -> None:
+    """Read a parameter file into `overrides`; raises RuleError."""
+    from ifgen_runtime import parameter_yaml  # with a YAML parser
+
+    try:
+        parameter_yaml.read_file(path, overrides.entry)
+    except parameter_yaml.ParameterYamlError as error:
+        raise RuleError(str(error)) from None

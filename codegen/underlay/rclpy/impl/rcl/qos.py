@@ -25,7 +25,7 @@ from rmw_local.qos import (
 )
 
 from .clock import rcl_duration_t
-from .enums import ExtensionEnum
+from .structs import ExtensionEnum
 
 RMW_DURATION_INFINITE = INFINITE
 RMW_QOS_DEADLINE_BEST_AVAILABLE = BEST_AVAILABLE_DURATION

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from rmw_local.message import message_type
 from rmw_local.qos import RELIABLE, TRANSIENT_LOCAL, QosProfile
 
 from rclpy.impl import program
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from rmw_local.writer import Writer
 
     from .node import Node
-__all__ = ["rclpy_logging_rosout_add_sublogger", "rclpy_logging_rosout_remove_sublogger"]
 
 ROSOUT_TOPIC = "/rosout"
 _QOS = QosProfile(depth=1000, reliability=RELIABLE, durability=TRANSIENT_LOCAL, lifespan=10 * 10**9)
@@ -60,7 +60,6 @@ def rosout_connect(node: Node) -> Callable[[], None] | None:
         return None
     # Imported here: a process without nodes needs no message class.
     from rcl_interfaces.msg import Log
-    from rmw_local.message import message_type
 
     registry, name, graph_node = _here(), node.logger_name(), node.graph_node
     writer = registry.writers.get(name)

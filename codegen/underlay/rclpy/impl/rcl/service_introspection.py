@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from .clock import Clock
-from .enums import ExtensionEnum
 from .qos import profile_of
+from .structs import ExtensionEnum
 
 if TYPE_CHECKING:
     from rmw_local.service import ServiceEndpoint

@@ -1,10 +1,27 @@
-"""The structs of upstream's extension: durations, request headers, event statuses; all read-only."""
+"""The enumerations and structs of upstream's extension module, all read-only."""
 
 from __future__ import annotations
 
+from enum import Enum, IntEnum
 from typing import NamedTuple, NoReturn
 
-from .enums import ExtensionEnum
+
+class ExtensionEnum(IntEnum):
+    """An unscoped C enumeration: equal to the integers; prints as `ClassName.MEMBER`."""
+
+    def __str__(self) -> str:
+        return f"{type(self).__name__}.{self.name}"
+
+
+class ScopedEnum(Enum):
+    """A scoped C++ enumeration: converts to an integer, but equals none."""
+
+    value: int
+
+    def __int__(self) -> int:
+        return self.value
+
+    __index__ = __int__
 
 
 class rmw_qos_policy_kind_t(ExtensionEnum):

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from rmw_local import timing
 
-from .client import Client
-from .context import Context
-from .destroyable import Destroyable
-from .errors import RCLError
-from .event import EventHandle
-from .guard_condition import GuardCondition
-from .service import Service
-from .subscription import Subscription
-from .timer import Timer
+from .clock import Timer
+from .context import Context, GuardCondition
+from .handle import Destroyable, RCLError
+from .services import Client, Service
+from .topics import EventHandle, Subscription
 
 _Entity = Subscription | GuardCondition | Timer | Client | Service | EventHandle
 

@@ -21,7 +21,7 @@ from rmw_local.transports.zenoh import attachments, tokens
 
 if TYPE_CHECKING:
     from rmw_local.transports.background import Background
-    from rmw_local.transports.seam import OnOver, OnReply, OnRequest
+    from rmw_local.transports.interface import OnOver, OnReply, OnRequest
     from rmw_local.transports.zenoh.presence import Gate
     from rmw_local.transports.zenoh.services import Serving
 

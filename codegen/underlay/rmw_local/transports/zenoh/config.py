@@ -1,10 +1,11 @@
-"""Zenoh's configuration for a domain: ours, or the user's file, and the overrides."""
+"""Zenoh's configuration for a domain: ours, or the user's file, and the overrides, and its errors."""
 
 from __future__ import annotations
 
 import _socket  # socket itself takes 3 ms to import
 import json
 import os
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -12,11 +13,32 @@ from typing import TYPE_CHECKING, Final
 import zenoh
 
 from rmw_local.notices import say
-from rmw_local.transports.errors import ConfigurationError
-from rmw_local.transports.zenoh.wording import place, reason
+from rmw_local.transports import ConfigurationError
 
 if TYPE_CHECKING:
     from rmw_local.transports.environment import Environment
+
+
+_IN_SOURCES: Final = re.compile(r" at /\S+?\.rs:\d+\.?")
+"""A place in the code of Zenoh."""
+_QUOTED: Final = re.compile(r"""(?:msg: |Str\()"((?:[^"\\]|\\.)*)""")
+_PLACES: Final = (re.compile(r"--> (\d+):(\d+)"), re.compile(r"line: (\d+), column: (\d+)"))
+
+
+def reason(error: Exception) -> str:
+    """Return what an error says, in one line and without the places in Zenoh's code."""
+    text = _IN_SOURCES.sub("", str(error))
+    if quoted := _QUOTED.search(text):
+        text = quoted[1].replace("\\n", "\n").replace('\\"', '"')
+    text = text.rpartition("\n  = ")[2]  # after a picture of the place
+    return " ".join(text.split()).rstrip(".!")
+
+
+def place(error: Exception) -> str:
+    """Return the place in the user's file that an error names, as `, line 2, column 1`, or nothing."""
+    found = next(filter(None, (pattern.search(str(error)) for pattern in _PLACES)), None)
+    return f", line {found[1]}, column {found[2]}" if found else ""
+
 
 _OURS: Final[dict[str, object]] = {
     "mode": "peer",
@@ -30,8 +52,8 @@ _OURS: Final[dict[str, object]] = {
     "connect/timeout_ms": {"peer": 10_000},
     "connect/exit_on_failure": False,
     "connect/retry": {"period_init_ms": 20, "period_max_ms": 1000, "period_increase_factor": 2},
-    # Ours is in `lending`. With Zenoh's, a receiver that may not lock more memory loses messages without
-    # a word, and the memory of every sender stays mapped when that is gone.
+    # Ours is in `shared_memory`. With Zenoh's, a receiver that may not lock more memory loses messages
+    # without a word, and the memory of every sender stays mapped when that is gone.
     "transport/shared_memory/enabled": False,
     "timestamping/enabled": True,  # transient local needs it
     "queries_default_timeout": 600_000,

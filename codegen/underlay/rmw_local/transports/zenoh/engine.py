@@ -24,9 +24,9 @@ from zenoh.handlers import FifoChannel
 
 from rmw_local.notices import Repeated
 from rmw_local.qos import KEEP_ALL, RELIABLE, TRANSIENT_LOCAL, QosProfile
+from rmw_local.transports import TransportError
 from rmw_local.transports.background import Background
-from rmw_local.transports.errors import TransportError
-from rmw_local.transports.seam import (
+from rmw_local.transports.interface import (
     Ask,
     Audience,
     Entity,
@@ -40,15 +40,14 @@ from rmw_local.transports.seam import (
     OnSample,
     Receipt,
 )
-from rmw_local.transports.zenoh import attachments, receipts, services, statistics, tokens
+from rmw_local.transports.zenoh import attachments, inquiries, services, tokens
 from rmw_local.transports.zenoh.calls import Calls
+from rmw_local.transports.zenoh.config import reason
 from rmw_local.transports.zenoh.crowds import Crowds
-from rmw_local.transports.zenoh.keys import alive_key, data_key, receipts_key, settled_key, statistics_key
-from rmw_local.transports.zenoh.lending import Lending
-from rmw_local.transports.zenoh.presence import PATIENCE, Gate, Presence
-from rmw_local.transports.zenoh.publication import Publication
+from rmw_local.transports.zenoh.presence import PATIENCE, Gate, Presence, Publication
 from rmw_local.transports.zenoh.services import Asking, Queried, Questions, Serving
-from rmw_local.transports.zenoh.wording import reason
+from rmw_local.transports.zenoh.shared_memory import SharedMemory
+from rmw_local.transports.zenoh.tokens import alive_key, data_key, receipts_key, settled_key, statistics_key
 
 _KEPT_OF_ALL: Final = 10_000
 """The number of messages that are kept for late joiners where the history is "keep all"."""
@@ -71,7 +70,7 @@ more threads, it takes as many peers that leave at once. They cost nothing while
 
 
 class ZenohTransport:
-    """A `rmw_local.transports.seam.Transport`. The configuration is made when the session opens.
+    """A `rmw_local.transports.interface.Transport`. The configuration is made when the session opens.
 
     `is_private` says that it connects this user's processes on this machine, and nobody else.
     """
@@ -99,7 +98,7 @@ class ZenohTransport:
         self._id = str(self._session.zid())
         self._liveliness = self._session.liveliness()
         parts = self._session, self._gate, self._background, self._domain, self.malformed
-        self._lending = Lending(*parts, is_private=self._is_private)
+        self._shared_memory = SharedMemory(*parts, is_private=self._is_private)
         self._calls = Calls(*parts)
         self._crowds = Crowds(self._session, self._gate, self._domain, is_private=self._is_private)
         if self._is_private:
@@ -122,10 +121,10 @@ class ZenohTransport:
         """Close the session, and wait for the threads that are using it."""
         self._calls.end()
         self._gate.shut()
-        self._lending.finish()
+        self._shared_memory.finish()
         self._background.end(PATIENCE)
         self._session.close()  # type: ignore[no-untyped-call]  # its stub has no return type
-        self._lending.close()
+        self._shared_memory.close()
         self._gate.wait()
 
     def knows_router(self) -> bool:
@@ -186,14 +185,16 @@ class ZenohTransport:
         self._followed.append(
             self._session.declare_queryable(
                 key,
-                self._gate.callback(statistics.answer, on_question, key),
+                self._gate.callback(inquiries.answer_statistics, on_question, key),
                 allowed_origin=Locality.REMOTE,
             )
         )
 
     def survey(self, patience: float) -> Callable[[], Iterable[bytes]]:
         """Send one query to all processes."""
-        return statistics.ask(self._gate, self._session, statistics_key(self._domain, "*"), patience)
+        return inquiries.ask_statistics(
+            self._gate, self._session, statistics_key(self._domain, "*"), patience
+        )
 
     def announce(self, node: Entity) -> Presence:
         """Declare a node's token."""
@@ -223,8 +224,8 @@ class ZenohTransport:
         if qos.durability == TRANSIENT_LOCAL:
             self._keeping[gid] = publication
         else:  # what is kept for late joiners would stay lent
-            lend = partial(self._lending.lend, key, audience, options["congestion_control"])
-            publication.shorten(lend, self._lending.threshold)
+            lend = partial(self._shared_memory.lend, key, audience, options["congestion_control"])
+            publication.shorten(lend, self._shared_memory.threshold)
         return publication
 
     def subscribe(self, subscription: Entity, on_sample: OnSample) -> Presence:
@@ -246,7 +247,7 @@ class ZenohTransport:
         else:
             declared = self._crowds.subscriber(key, handler)
         token = self._written(subscription)
-        listening = self._lending.listen(tokens.gid_of(token), key, on_sample)
+        listening = self._shared_memory.listen(tokens.gid_of(token), key, on_sample)
         return Presence(self._gate, *self._declared(token), declared, listening)
 
     def ask(self, client: Entity, on_reply: OnReply, on_over: OnOver) -> Asking:
@@ -321,7 +322,7 @@ class ZenohTransport:
             return
         appeared = sample.kind == SampleKind.PUT
         if entity.kind is Kind.NODE and not appeared:
-            self._lending.bury(entity.peer)
+            self._shared_memory.release(entity.peer)
         on_entity(entity, appeared)
         if entity.kind is Kind.SERVER and not appeared:
             for questions in tuple(self._questions):
@@ -337,14 +338,14 @@ class ZenohTransport:
 
     def _on_question(self, on_receipts: OnReceipts, query: zenoh.Query) -> None:
         try:
-            receipts.answer(on_receipts, query)
+            inquiries.answer_receipts(on_receipts, query)
         except ValueError as error:
             self.malformed.add(str(error))
 
     def _receipts(self, gid: bytes, peer: str, patience: float) -> list[Receipt] | None:
         get = partial(self._session.get, receipts_key(self._domain, peer))
         try:
-            return receipts.ask(self._gate, get, gid, patience)
+            return inquiries.ask_receipts(self._gate, get, gid, patience)
         except ValueError as error:
             self.malformed.add(str(error))
             return None
@@ -360,8 +361,8 @@ class ZenohTransport:
         # Zenoh asks all publishers for what they kept, those of this process too, which delivered it already.
         if known is not None and known.gid not in self._keeping:
             data = sample.payload.to_bytes()
-            if len(data) >= self._lending.threshold:
-                self._lending.keep()
+            if len(data) >= self._shared_memory.threshold:
+                self._shared_memory.keep()
             on_sample(data, *known)
 
     def _on_request(self, on_request: OnRequest, serving: Serving, key: str, query: zenoh.Query) -> None:

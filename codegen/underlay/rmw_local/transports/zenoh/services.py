@@ -13,7 +13,7 @@ from ifgen_runtime.printable import printable
 from zenoh import ConsolidationMode, Locality, QueryTarget
 
 from rmw_local.transports.background import Background
-from rmw_local.transports.seam import Ask, OnOver
+from rmw_local.transports.interface import Ask, OnOver
 from rmw_local.transports.zenoh import attachments
 from rmw_local.transports.zenoh.calls import Caller, Calls, Listed, Server
 from rmw_local.transports.zenoh.presence import Gate, Presence

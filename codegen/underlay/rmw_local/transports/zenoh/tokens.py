@@ -1,9 +1,14 @@
-"""Liveliness tokens: the graph, a text for each node and each endpoint.
+"""Keys and liveliness tokens: the graph, a text for each node and each endpoint.
 
-`@ros2_lv/<domain>/<session>/<node id>/<entity id>/<kind>/<enclave>/<namespace>/<node>`, and for endpoints
-`/<name>/<type>/<hash>/<qos>`. What follows after that is newer than we are, and is ignored, but for two words
-of our own. `/ifgen_adapts` ends a further token of a subscription or a server, with the hash of a definition
-that it adapts. `/ifgen_refuses` ends the token of a client or a server that nobody is to adapt.
+A topic's messages, and a service's requests and responses, have the key `<domain>/<name>/<type>/<hash>`.
+
+A token is `@ros2_lv/<domain>/<session>/<node id>/<entity id>/<kind>/<enclave>/<namespace>/<node>`, and for
+endpoints `/<name>/<type>/<hash>/<qos>`. What follows after that is newer than we are, and is ignored, but for
+two words of our own. `/ifgen_adapts` ends a further token of a subscription or a server, with the hash of a
+definition that it adapts. `/ifgen_refuses` ends the token of a client or a server that nobody is to adapt.
+
+A QoS profile is `reliability:durability:history,depth:deadline:lifespan:liveliness,lease`, durations as
+`s,ns`. A value that equals rmw_zenoh's default is left out.
 """
 
 from __future__ import annotations
@@ -14,9 +19,146 @@ from typing import Final
 
 import xxhash
 
-from rmw_local.transports.seam import Entity, Kind
-from rmw_local.transports.zenoh import qos_text
-from rmw_local.transports.zenoh.keys import NO_HASH, dds_type, hash_of, ros_type
+from rmw_local.qos import (
+    AUTOMATIC,
+    BEST_EFFORT,
+    INFINITE,
+    KEEP_ALL,
+    KEEP_LAST,
+    MANUAL_BY_TOPIC,
+    RELIABLE,
+    TRANSIENT_LOCAL,
+    VOLATILE,
+    QosProfile,
+)
+from rmw_local.transports.interface import Entity, Kind
+
+NO_HASH: Final = "TypeHashNotSupported"
+"""The hash of a type that has none, as on Humble."""
+
+_DDS_TYPE: Final = re.compile(r"([A-Za-z]\w*)::(msg|srv|action)::dds_::([A-Za-z]\w*)_", re.ASCII)
+_HASH: Final = re.compile(r"RIHS\d\d_[0-9a-f]{64}", re.ASCII)
+
+
+def data_key(domain: int, name: str, type_name: str, type_hash: str) -> str:
+    """The key that carries a topic's messages, or a service's requests and responses."""
+    return f"{domain}/{name.strip('/')}/{dds_type(type_name)}/{type_hash or NO_HASH}"
+
+
+def alive_key(domain: int, gid: str) -> str:
+    """The key on which a publisher says that it is alive: ours. `gid` is in hexadecimal digits, or *."""
+    return f"@ifgen_alive/{domain}/{gid}"
+
+
+def receipts_key(domain: int, peer: str) -> str:
+    """The key on which a process says what has come to its subscriptions: ours."""
+    return f"@ifgen_receipts/{domain}/{peer}"
+
+
+def settled_key(domain: int, peer: str) -> str:
+    """The key of a token of ours that a process declares after all that was there; `peer` is * for all."""
+    return f"@ifgen_settled/{domain}/{peer}"
+
+
+def statistics_key(domain: int, peer: str) -> str:
+    """The key on which a process answers questions for its statistics: ours. `peer` is *, for all."""
+    return f"@ifgen_statistics/{domain}/{peer}"
+
+
+def dds_type(type_name: str) -> str:
+    """`pkg/msg/Name` as `pkg::msg::dds_::Name_`."""
+    package, kind, name = type_name.split("/")
+    return f"{package}::{kind}::dds_::{name}_"
+
+
+def ros_type(text: str) -> str:
+    """The opposite of `dds_type`; raises ValueError."""
+    found = _DDS_TYPE.fullmatch(text)
+    if found is None:
+        raise ValueError(f"{text[:100]!r} is not the name of a type")
+    return "/".join(found.groups())
+
+
+def hash_of(text: str) -> str:
+    """A type hash, empty if the text says that there is none; raises ValueError."""
+    if text == NO_HASH:
+        return ""
+    if _HASH.fullmatch(text) is None:
+        raise ValueError(f"{text[:100]!r} is not a type hash")
+    return text
+
+
+_DEPTH: Final = 42
+_SECOND: Final = 1_000_000_000  # [ns]
+_DIGITS: Final = r"(\d{0,10})"
+_QOS: Final = re.compile(
+    ":".join(
+        (
+            r"(\d?)",
+            r"(\d?)",
+            rf"(\d?),{_DIGITS}",
+            rf"{_DIGITS},{_DIGITS}",
+            rf"{_DIGITS},{_DIGITS}",
+            rf"(\d?),{_DIGITS},{_DIGITS}",
+        )
+    ),
+    re.ASCII,
+)
+
+
+def write_qos(profile: QosProfile) -> str:
+    """The text of a resolved profile."""
+    reliability = _unless(profile.reliability, RELIABLE)
+    durability = _unless(profile.durability, VOLATILE)
+    history = _unless(profile.history, KEEP_LAST)
+    depth = _unless(profile.depth or _DEPTH, _DEPTH)
+    deadline, lifespan = _duration(profile.deadline), _duration(profile.lifespan)
+    liveliness, lease = _unless(profile.liveliness, AUTOMATIC), _duration(profile.liveliness_lease_duration)
+    return f"{reliability}:{durability}:{history},{depth}:{deadline}:{lifespan}:{liveliness},{lease}"
+
+
+def read_qos(text: str) -> QosProfile:
+    """The profile; raises ValueError for anything that no resolved profile could have."""
+    found = _QOS.fullmatch(text)
+    if found is None:
+        raise ValueError(f"{text[:100]!r} is not a QoS profile")
+    reliability, durability, history, depth, *durations = found.groups()
+    deadline_s, deadline_ns, lifespan_s, lifespan_ns, liveliness, lease_s, lease_ns = durations
+    return QosProfile(
+        reliability=_one_of(reliability, RELIABLE, BEST_EFFORT),
+        durability=_one_of(durability, VOLATILE, TRANSIENT_LOCAL),
+        history=_one_of(history, KEEP_LAST, KEEP_ALL),
+        depth=int(depth or _DEPTH),
+        deadline=_nanoseconds(deadline_s, deadline_ns),
+        lifespan=_nanoseconds(lifespan_s, lifespan_ns),
+        liveliness=_one_of(liveliness, AUTOMATIC, MANUAL_BY_TOPIC),
+        liveliness_lease_duration=_nanoseconds(lease_s, lease_ns),
+    )
+
+
+def _unless(value: int, default: int) -> str:
+    return "" if value == default else str(value)
+
+
+def _duration(duration: int) -> str:
+    seconds, nanoseconds = divmod(duration or INFINITE, _SECOND)
+    endless = divmod(INFINITE, _SECOND)
+    return f"{_unless(seconds, endless[0])},{_unless(nanoseconds, endless[1])}"
+
+
+def _nanoseconds(seconds: str, nanoseconds: str) -> int:
+    """A duration [ns]; 0 means that none was set, and longer ones than rmw knows are endless."""
+    endless = divmod(INFINITE, _SECOND)
+    whole = int(seconds or endless[0]) * _SECOND + int(nanoseconds or endless[1])
+    return min(whole or INFINITE, INFINITE)
+
+
+def _one_of(text: str, default: int, other: int) -> int:
+    value = int(text or default)
+    if value not in {default, other}:
+        raise ValueError(f"{value} is not a value of this policy")
+    return value
+
 
 _PREFIX: Final = "@ros2_lv"
 _CROWD: Final = "@ifgen_lv"
@@ -74,7 +216,7 @@ def write(domain: int, session: str, entity: Entity) -> str:
             _mangled(entity.name),
             _mangled(dds_type(entity.type_name)),
             entity.type_hash or NO_HASH,
-            qos_text.write(entity.qos),
+            write_qos(entity.qos),
         ]
         if entity.stands_in:
             parts.append(_STANDS_IN)
@@ -113,7 +255,7 @@ def read(token: str) -> Entity:
         name=_must_match(_PATH, _demangled(name)),
         type_name=ros_type(type_name),
         type_hash=hash_of(type_hash),
-        qos=qos_text.read(profile),
+        qos=read_qos(profile),
         stands_in=_STANDS_IN in parts[_ENDPOINT_PARTS:],
         refuses=_REFUSES in parts[_ENDPOINT_PARTS:],
     )

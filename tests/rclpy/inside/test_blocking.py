@@ -11,8 +11,8 @@ import rclpy
 from rclpy.action import ActionClient, ActionServer
 from rclpy.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
 from rclpy.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from rclpy.impl import sync_calls
-from rclpy.impl.sync_calls import SynchronousCallError
+from rclpy.impl import blocking
+from rclpy.impl.blocking import SynchronousCallError
 from rclpy.node import Node
 from std_srvs.srv import Empty
 from test_msgs.action import Fibonacci
@@ -21,13 +21,13 @@ from test_msgs.action import Fibonacci
 @pytest.fixture
 def node() -> Iterator[Node]:
     rclpy.init()
-    sync_calls.enabled = True
+    blocking.enabled = True
     node = rclpy.create_node("n")
     node.create_service(
         Empty, "e", lambda _, response: response, callback_group=MutuallyExclusiveCallbackGroup()
     )
     yield node
-    sync_calls.enabled = False
+    blocking.enabled = False
     rclpy.shutdown()
 
 

@@ -24,7 +24,7 @@ from rmw_local.transports.zenoh import attachments, tokens
 
 if TYPE_CHECKING:
     from rmw_local.transports.background import Background
-    from rmw_local.transports.seam import Audience, OnSample
+    from rmw_local.transports.interface import Audience, OnSample
     from rmw_local.transports.zenoh.presence import Gate
 
 _PART: Final = "ifgen_memory"
@@ -34,7 +34,7 @@ _MOST_GIDS: Final = 4096  # of the subscriptions in one process
 _LONGEST_NOTICE: Final = _NOTICE.size + _MOST_GIDS * attachments.GID  # bytes
 
 
-class Lending:
+class SharedMemory:
     """The shared memory of one session, if it is private."""
 
     def __init__(
@@ -54,7 +54,7 @@ class Lending:
         self._listening: dict[bytes, tuple[str, OnSample]] = {}  # the topic's key and what to call, by gid
         self._pool: Pool | None = None
         self._borrower = Borrower()
-        self._near: set[str] = set()
+        self._readers: set[str] = set()
         self._gone: set[str] = set()  # or perhaps only a node of theirs is
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
         size, self.threshold = read_memory()
@@ -81,7 +81,7 @@ class Lending:
         borrowers: dict[str, list[bytes]] = {}
         for peer, gid in audience():
             borrowers.setdefault(peer, []).append(gid)
-        if not borrowers or not all(self._is_near(pool, peer) for peer in borrowers):
+        if not borrowers or not all(self._can_read(pool, peer) for peer in borrowers):
             return False
         if max(map(len, borrowers.values())) > _MOST_GIDS:
             return False
@@ -97,11 +97,11 @@ class Lending:
             )
         return True
 
-    def _is_near(self, pool: Pool, session: str) -> bool:
-        if session in self._near:
+    def _can_read(self, pool: Pool, session: str) -> bool:
+        if session in self._readers:
             return True
-        if pool.is_near(session):  # its file is there before others see anything of a session
-            self._near.add(session)
+        if pool.can_read(session):  # its file is there before others see anything of a session
+            self._readers.add(session)
             return True
         return False
 
@@ -110,7 +110,7 @@ class Lending:
         if self._pool is not None:
             self._pool.keep()
 
-    def bury(self, session: str) -> None:
+    def release(self, session: str) -> None:
         """Let go of the memory of a session, if it is gone, and remove it if its process was killed."""
         if self._pool is None:
             return
@@ -118,16 +118,16 @@ class Lending:
             is_first = not self._gone
             self._gone.add(session)
         if is_first:
-            self._background.start(self._bury_all, self._pool, delay=_DYING)
+            self._background.start(self._release_all, self._pool, delay=_DYING)
 
-    def _bury_all(self, pool: Pool) -> None:
+    def _release_all(self, pool: Pool) -> None:
         with self._lock:
             gone, self._gone = self._gone, set()
         for session in gone:
-            pool.bury(session)
-            if not pool.is_near(session):
+            pool.remove_orphan(session)
+            if not pool.can_read(session):
                 self._borrower.forget(session)
-                self._near.discard(session)
+                self._readers.discard(session)
 
     def finish(self) -> None:
         """Lend no more, and let others read what they were lent."""

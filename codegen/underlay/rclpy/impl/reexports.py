@@ -9,8 +9,8 @@ from typing import Any
 _WAITABLE = {"NumberOfEntities": "rclpy.waitable", "Waitable": "rclpy.waitable"}
 _TYPE_CHECK = {"check_is_valid_srv_type": "rclpy.type_support"}
 
-# The home of each name that a module lends; `:` if it has another name there.
-_LENT: dict[str, dict[str, str]] = {
+# The home of each name that a module passes on; `:` if it has another name there.
+_HOMES: dict[str, dict[str, str]] = {
     "rclpy.action.client": {"CancelGoal": "action_msgs.srv", **_WAITABLE},
     "rclpy.action.server": _WAITABLE,
     "rclpy.executors": {
@@ -25,7 +25,6 @@ _LENT: dict[str, dict[str, str]] = {
         "timeout_sec_to_nsec": "rclpy.utilities",
         **_WAITABLE,
     },
-    "rclpy.impl.rcutils_logger": {"Clock": "rclpy.clock"},
     "rclpy.lifecycle.node": {"CallbackGroup": "rclpy.callback_groups"},
     "rclpy.logging_service": {"LoggingSeverity": "rclpy.impl.logging_severity"},
     "rclpy.node": {"ListParameters": "rcl_interfaces.srv", "ParameterMsg": "rcl_interfaces.msg:Parameter"},
@@ -41,12 +40,12 @@ _LENT: dict[str, dict[str, str]] = {
 }
 
 
-def lend(module: str) -> Callable[[str], Any]:
-    """A module's `__getattr__`, which finds what the module lends when somebody asks for it.
+def reexport(module: str) -> Callable[[str], Any]:
+    """A module's `__getattr__`, which finds a name that the module passes on when somebody asks for it.
 
     Homes within rclpy are imported at once: programs reach those modules, too, because upstream imports them.
     """
-    homes = _LENT[module]
+    homes = _HOMES[module]
     for each in homes.values():
         if each.startswith("rclpy."):
             importlib.import_module(each)

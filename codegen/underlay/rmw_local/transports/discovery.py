@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, ClassVar, Final
 from ifgen_runtime.neighbours import BELL
 
 from rmw_local.notices import say
+from rmw_local.transports import ConfigurationError, TransportError
 from rmw_local.transports.doorbell import CLOCK, IS_POSSIBLE, Doorbell
-from rmw_local.transports.errors import ConfigurationError, TransportError
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -45,7 +45,6 @@ _LATE: Final = (
     "rmw_local.mismatch.passage",
     "rmw_local.mismatch.telling",
     "rmw_local.statistics",
-    "rmw_local.transports.adapted",
     "rmw_local.transports.asking",
     "rmw_local.transports.environment",
     "rmw_local.transports.link",
@@ -80,10 +79,10 @@ _OF_EVERY_NODE: Final = (
 )
 
 
-class Reach:
+class Discovery:
     """The way of one domain to other processes."""
 
-    all: ClassVar[list[Reach]] = []
+    all: ClassVar[list[Discovery]] = []
 
     def __init__(self, domain: Domain) -> None:
         self._domain = domain
@@ -145,7 +144,7 @@ class Reach:
         return announced is not None and all(link.others.get(gid) for gid in announced)
 
     def stay_apart(self) -> None:
-        """Reach nobody, because of a virtual clock. Whoever comes second says so."""
+        """Discovery nobody, because of a virtual clock. Whoever comes second says so."""
         if not IS_POSSIBLE:
             return
         with suppress(TransportError):
@@ -174,7 +173,7 @@ class Reach:
         if self._transport is not None:
             _inherited_sessions.append(self._transport)
         _inherited.append(self)
-        self._domain.reach = None
+        self._domain.discovery = None
 
     def _listen(self) -> None:
         bell = self._bell
@@ -316,25 +315,25 @@ def _unmatched(domain: Domain) -> str:
 
 
 def _leave() -> None:
-    for reach in Reach.all:
-        reach.end()
+    for each in Discovery.all:
+        each.end()
 
 
 def _load() -> None:
     """Import what a thread of ours may be importing: a fork meanwhile would wait for that thread for ever."""
-    if Reach.all:
+    if Discovery.all:
         for name in _LATE:
             with suppress(ImportError):  # Zenoh may be missing
                 import_module(name)
 
 
 def _forget() -> None:
-    for reach in Reach.all:
-        reach.forget()
-    Reach.all.clear()
+    for each in Discovery.all:
+        each.forget()
+    Discovery.all.clear()
 
 
-_inherited: list[Reach] = []  # What would end with an object, such as a session, must not end in a fork.
+_inherited: list[Discovery] = []  # What would end with an object, such as a session, must not end in a fork.
 _inherited_sessions: list[object] = []  # A fork has none of Zenoh's threads; opening a session hangs there.
 atexit.register(_leave)
 if hasattr(os, "register_at_fork"):

@@ -1,0 +1,277 @@
+"""The handles of publishers, subscriptions and their QoS events, and messages as bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from rmw_local.graph import GraphNode
+from rmw_local.message import DecodeError, message_type
+from rmw_local.status import Status
+
+from . import structs
+from .clock import rcl_duration_t
+from .endpoint import EndpointHandle, SourceHandle
+from .handle import RCLError, RMWError
+from .qos import profile_of
+from .structs import rcl_publisher_event_type_t, rcl_subscription_event_type_t
+
+if TYPE_CHECKING:
+    from rmw_local.mismatch.origin import Origin
+
+
+def rclpy_serialize(pymsg: Any, pymsg_type: type[Any]) -> bytes:
+    """Return a message as CDR bytes with their encapsulation header."""
+    return message_type(pymsg_type).serialize(pymsg)
+
+
+def rclpy_deserialize(pybuffer: bytes, pymsg_type: type[Any]) -> Any:
+    """Return the message that CDR bytes hold, in either byte order; RMWError if they do not fit."""
+    if not isinstance(pybuffer, bytes):
+        raise TypeError(f"rclpy_deserialize(buffer: bytes, type): got {pybuffer!r}")
+    try:
+        return message_type(pymsg_type).deserialize(pybuffer)
+    except DecodeError as error:
+        raise RMWError(f"failed to deserialize ROS message: {error}") from None
+
+
+class Publisher(EndpointHandle):
+    """Publishes on one topic. Raises ValueError for a bad name, RCLError for anything else that is wrong."""
+
+    def __init__(self, node: object, pymsg_type: type[Any], topic: str, pyqos_profile: object) -> None:
+        super().__init__()
+        profile, kind = profile_of(pyqos_profile), message_type(pymsg_type)
+        self._writer = writer = self._open(
+            "publisher",
+            node,
+            topic,
+            profile,
+            lambda place, name: place.create_writer(kind, name, profile),
+            GraphNode.close_writer,
+        )
+        self._context = self._node.context
+        self._publish = writer.publish
+
+    @property
+    def writer(self) -> Any:
+        """The endpoint in the middleware, for the handles of events."""
+        return self._writer
+
+    def get_topic_name(self) -> str:
+        """Return the topic's full name."""
+        if self._destroyed:
+            raise RCLError("failed to get publisher topic name: publisher pointer is invalid")
+        return self._writer.topic
+
+    def get_subscription_count(self) -> int:
+        """Count the matched subscriptions."""
+        self._close_pending()
+        return len(self._writer.matches)
+
+    def publish(self, pymsg: Any) -> None:
+        """Deliver a message to every matched subscription."""
+        if self._destroyed or not self._context.valid:
+            self._refuse()
+        self._publish(pymsg)
+
+    def publish_raw(self, msg: bytes) -> None:
+        """Deliver serialised bytes."""
+        if not isinstance(msg, bytes):
+            raise TypeError(f"publish_raw(msg: bytes): got {msg!r}")
+        if self._destroyed or not self._context.valid:
+            self._refuse()
+        self._writer.publish_raw(msg)
+
+    def publish_serialized(self, data: bytes) -> None:
+        """Deliver a message of this type that rclpy itself has serialised."""
+        if self._destroyed or not self._context.valid:
+            self._refuse()
+        self._writer.publish_bytes(data)
+
+    def wait_for_all_acked(self, pytimeout: rcl_duration_t) -> bool:
+        """Wait until reliable subscriptions in other processes have everything; those in this one have it."""
+        return bool(self._writer.wait_until_received(pytimeout.nanoseconds))
+
+    def assert_liveliness(self) -> None:
+        """Say that the publisher lives, for one more lease."""
+        if self._destroyed:
+            raise RCLError("Failed to assert liveliness on the Publisher: publisher pointer is invalid")
+        self._writer.assert_liveliness()
+
+    def _refuse(self) -> None:
+        why = "publisher pointer is invalid" if self._destroyed else "publisher's context is invalid"
+        raise RCLError(f"Failed to publish: {why}")
+
+
+def rclpy_assert_liveliness(publisher: Publisher) -> None:
+    """Say that the publisher is alive."""
+    publisher.assert_liveliness()
+
+
+MessageInfo = dict[str, int | None]
+# A message (or its bytes), its source stamp [ns, system time], its number among its publisher's messages, the
+# stamp of its arrival [ns, system time].
+Taken = tuple[Any, int, int, int]
+
+
+class Subscription(SourceHandle, EndpointHandle):
+    """Subscribes to one topic. Raises ValueError for a bad name, RCLError for anything else that is wrong."""
+
+    def __init__(self, node: object, pymsg_type: type[Any], topic: str, pyqos_profile: object) -> None:
+        super().__init__()
+        profile, kind = profile_of(pyqos_profile), message_type(pymsg_type)
+        self._reader = reader = self._open(
+            "subscription",
+            node,
+            topic,
+            profile,
+            lambda place, name: place.create_reader(kind, name, profile),
+            GraphNode.close_reader,
+        )
+        self._use(reader)
+        self._take = reader.take
+        self._kind = kind
+        self._deserialize = kind.deserialize
+        self._drops = kind.drops
+
+    @property
+    def reader(self) -> Any:
+        """The endpoint in the middleware, for the handles of events."""
+        return self._reader
+
+    def use_views(self) -> None:
+        """Leave sequences of numbers in the bytes that all subscriptions share, from now on."""
+        self._reader.refuse_parcels()
+        self._deserialize = self._kind.deserialize_views
+
+    def get_topic_name(self) -> str:
+        """Return the topic's full name."""
+        if self._destroyed:
+            raise RCLError("failed to get subscription topic name: subscription pointer is invalid")
+        return self._reader.topic
+
+    def get_publisher_count(self) -> int:
+        """Count the matched publishers."""
+        self._close_pending()
+        return self._reader.matched.current
+
+    def take_message(self, pymsg_type: type[Any], raw: bool) -> tuple[Any, MessageInfo] | None:
+        """Take the oldest message (`raw`: as bytes) and its metadata; None if none is there, or readable."""
+        taken = self.take(raw)
+        return None if taken is None else (taken[0], message_info(taken))
+
+    def take(self, raw: bool) -> Taken | None:
+        """Do what `take_message` does; the metadata are made by `message_info` when they are wanted."""
+        if self._destroyed:
+            raise RCLError("failed to take message from subscription: subscription pointer is invalid")
+        sample: Any = self._take()
+        if sample is None:
+            return None
+        if raw:
+            return self._raw(sample)
+        try:
+            data, stamp, number, arrival = sample
+        except ValueError:  # it is marked
+            return self._take_with_care(*sample)
+        try:
+            return self._deserialize(data), stamp, number, arrival
+        except DecodeError:
+            self._drops.add()
+            return None
+
+    def _raw(self, sample: tuple[Any, ...]) -> Taken:
+        """A message as bytes, as all that follow will be."""
+        if self._reader.takes_parcels:
+            self._reader.refuse_parcels()
+        data, stamp, number, arrival = sample[:4]
+        return bytes(data), stamp, number, arrival
+
+    def _take_with_care(
+        self, data: bytes, stamp: int, number: int, arrival: int, origin: Origin
+    ) -> Taken | None:
+        """Read bytes that may be of another definition."""
+        message = origin.read(data, self._kind, self._deserialize, self._reader.node)
+        return None if message is None else (message, stamp, number, arrival)
+
+
+def message_info(taken: Taken) -> MessageInfo:
+    """The metadata of a message."""
+    _, stamp, number, arrival = taken
+    return {
+        "source_timestamp": stamp,
+        "received_timestamp": arrival,  # in one process, delivery happens inside publish
+        "publication_sequence_number": number,
+        "reception_sequence_number": None,
+    }
+
+
+_PublisherEvent = rcl_publisher_event_type_t
+_SubscriptionEvent = rcl_subscription_event_type_t
+
+
+def _qos_status(total: int, change: int, kind: int) -> structs.rmw_requested_qos_incompatible_event_status_t:
+    policy = structs.rmw_qos_policy_kind_t(kind or 1)
+    return structs.rmw_requested_qos_incompatible_event_status_t(total, change, policy)
+
+
+# The name of the status at the endpoint, and the struct that it is returned as.
+_PUBLISHER_EVENTS: dict[_PublisherEvent, tuple[str, Callable[..., Any]]] = {
+    _PublisherEvent.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: (
+        "deadline",
+        structs.rmw_offered_deadline_missed_status_t,
+    ),
+    _PublisherEvent.RCL_PUBLISHER_LIVELINESS_LOST: ("liveliness_lost", structs.rmw_liveliness_lost_status_t),
+    _PublisherEvent.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: ("incompatible_qos", _qos_status),
+    _PublisherEvent.RCL_PUBLISHER_INCOMPATIBLE_TYPE: (
+        "incompatible_type",
+        structs.rmw_incompatible_type_status_t,
+    ),
+    _PublisherEvent.RCL_PUBLISHER_MATCHED: ("matched", structs.rmw_matched_status_t),
+}
+_SUBSCRIPTION_EVENTS: dict[_SubscriptionEvent, tuple[str, Callable[..., Any]]] = {
+    _SubscriptionEvent.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: (
+        "deadline",
+        structs.rmw_requested_deadline_missed_status_t,
+    ),
+    _SubscriptionEvent.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: (
+        "liveliness_changed",
+        structs.rmw_liveliness_changed_status_t,
+    ),
+    _SubscriptionEvent.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: ("incompatible_qos", _qos_status),
+    _SubscriptionEvent.RCL_SUBSCRIPTION_MESSAGE_LOST: ("message_lost", structs.rmw_message_lost_status_t),
+    _SubscriptionEvent.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: (
+        "incompatible_type",
+        structs.rmw_incompatible_type_status_t,
+    ),
+    _SubscriptionEvent.RCL_SUBSCRIPTION_MATCHED: ("matched", structs.rmw_matched_status_t),
+}
+
+
+class EventHandle(SourceHandle):
+    """One kind of event of a publisher or a subscription; ready when its numbers changed."""
+
+    def __init__(
+        self,
+        parent: Publisher | Subscription,
+        event_type: rcl_publisher_event_type_t | rcl_subscription_event_type_t,
+    ) -> None:
+        super().__init__()
+        if isinstance(parent, Publisher) and isinstance(event_type, _PublisherEvent):
+            name, self._struct = _PUBLISHER_EVENTS[event_type]
+            status = getattr(parent.writer, name)
+        elif isinstance(parent, Subscription) and isinstance(event_type, _SubscriptionEvent):
+            name, self._struct = _SUBSCRIPTION_EVENTS[event_type]
+            status = getattr(parent.reader, name)
+        else:
+            raise TypeError(
+                "EventHandle(): expected a subscription and an rcl_subscription_event_type_t, or a"
+                f" publisher and an rcl_publisher_event_type_t, got {parent!r} and {event_type!r}"
+            )
+        status = status or Status()  # an endpoint without a deadline misses none
+        self._use(status)
+        self._take: Callable[[], tuple[int, ...]] = status.take
+        self._parent = parent  # lives as long as its events
+
+    def take_event(self) -> Any:
+        """Return the current numbers and start counting changes again."""
+        return self._struct(*self._take())
