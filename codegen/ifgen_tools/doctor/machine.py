@@ -32,7 +32,7 @@ _TESTED = _WITH_WHEELS  # the native tests run on the wheels
 
 
 @dataclass(frozen=True, slots=True)
-class Finding:
+class Component:
     """One thing looked at: what it is, what was found, and, where something is missing, what to do."""
 
     subject: str
@@ -40,92 +40,92 @@ class Finding:
     advice: str | None = None
 
 
-def examine() -> Iterator[Finding]:
+def examine() -> Iterator[Component]:
     """Look at everything that decides what ifgen can do here; takes as long as starting real rclpy does."""
     system = f"{platform.system()} {platform.machine()}"
-    yield Finding("ifgen", f"{resources.VERSION} in {resources.PACKAGE} ({installing.origin()})")
+    yield Component("ifgen", f"{resources.VERSION} in {resources.PACKAGE} ({installing.origin()})")
     yield _runtime()
-    yield Finding("Python", f"{platform.python_version()} on {system}, {sys.executable}")
+    yield Component("Python", f"{platform.python_version()} on {system}, {sys.executable}")
     # Asked of the module: lark and lark-parser overwrite each other's files, not each other's records.
-    yield Finding("lark", str(lark.__version__))
+    yield Component("lark", str(lark.__version__))
     yield _codec()
-    yield Finding("local transport", "works anywhere: ifgen run --transport local PROGRAM")
+    yield Component("local transport", "works anywhere: ifgen run --transport local PROGRAM")
     yield _other_processes()
-    yield Finding("nodes", neighbours.everywhere() or "none of this user run on this machine now")
+    yield Component("nodes", neighbours.everywhere() or "none of this user run on this machine now")
     if reason := reason_against_domain("rclpy"):
-        yield Finding("ROS domain", reason)
+        yield Component("ROS domain", reason)
     yield from _real_rclpy(system)
 
 
-def _other_processes() -> Finding:
+def _other_processes() -> Component:
     """Whether the local transport leaves its process."""
     number = _version("eclipse-zenoh")
     if number is None:
-        return Finding("other processes", "not reached: Zenoh is missing", installing.add_runtime())
+        return Component("other processes", "not reached: Zenoh is missing", installing.add_runtime())
     found, advice = other_processes.look()
-    return Finding("other processes", f"{found} (Zenoh {number})", advice)
+    return Component("other processes", f"{found} (Zenoh {number})", advice)
 
 
-def _runtime() -> Finding:
+def _runtime() -> Component:
     """The folder from which packages import `ifgen_runtime`; says if another ifgen's copy hides ours."""
     spec = importlib.util.find_spec("ifgen_runtime")
     home = Path(spec.origin).parent if spec and spec.origin else None
     ours = resources.PACKAGE.parent / "ifgen_runtime"
     if ours.is_dir() and home and not home.samefile(ours):
-        return Finding("runtime", f"in {home}, which hides the one in {ours}", installing.add_runtime())
-    return Finding("runtime", f"in {home}")
+        return Component("runtime", f"in {home}, which hides the one in {ours}", installing.add_runtime())
+    return Component("runtime", f"in {home}")
 
 
-def _codec() -> Finding:
+def _codec() -> Component:
     """Which codec serialises messages here, and why."""
     codec = choice.chosen()
     number = _version(NATIVE)
     if codec.extension:
-        return Finding("codec", f"in C, by {NATIVE} {number or 'of unknown version'}")
+        return Component("codec", f"in C, by {NATIVE} {number or 'of unknown version'}")
     can_be_had = sys.implementation.name == "cpython" and platform.system() == "Linux"
     advice = installing.add_native() if can_be_had and number is None else None
-    return Finding("codec", f"in Python (slower): {codec.reason}", advice)
+    return Component("codec", f"in Python (slower): {codec.reason}", advice)
 
 
-def _real_rclpy(system: str) -> Iterator[Finding]:
+def _real_rclpy(system: str) -> Iterator[Component]:
     if importlib.util.find_spec("rclpy") is None:
         advice = "source /opt/ros/jazzy/setup.sh"
         if system == "Linux x86_64":
             advice += f", or {installing.add_extra('ros')}"
-        yield Finding("real rclpy", "not found", advice)
+        yield Component("real rclpy", "not found", advice)
         return
     lines = _ask_real()
     if len(lines) < 3:  # what `real_rclpy` prints
         reason = "; ".join(lines) or "`import rclpy` in Python says more"
         chosen = os.environ.get("RMW_IMPLEMENTATION")
         if chosen and chosen in reason:
-            yield Finding(
+            yield Component(
                 "real rclpy",
                 f"does not start with RMW_IMPLEMENTATION={chosen}",
                 f"unset it, or set RMW_IMPLEMENTATION=rmw_fastrtps_cpp; it says: {reason}",
             )
         else:
-            yield Finding("real rclpy", "cannot be imported", reason)
+            yield Component("real rclpy", "cannot be imported", reason)
         return
     home, rmw, type_support = lines[0], lines[1], "\n".join(lines[2:])
     number = _version("ros-rclpy") or _version("rclpy") or "of unknown version"
     distribution, witness = _distribution(home)
     sourced = os.environ.get("ROS_DISTRO", distribution)
-    yield Finding(
+    yield Component(
         "real rclpy",
         f"{number} (ROS 2 {distribution}: {witness}) in {home}",
         None
         if sourced == distribution
         else f"ROS_DISTRO says {sourced}: unset it, or source that distribution",
     )
-    yield Finding("middleware", rmw)
+    yield Component("middleware", rmw)
     if type_support.startswith(_OK):
         found = f"{type_support.removeprefix(_OK)}: never-compiled packages work"
         if distribution not in _TESTED:
             found += f"; symbols and layouts fit, but its tests were never run on {distribution}"
-        yield Finding("type support", found)
+        yield Component("type support", found)
     else:
-        yield Finding("type support", "not usable: on real rclpy only compiled packages work", type_support)
+        yield Component("type support", "not usable: on real rclpy only compiled packages work", type_support)
 
 
 def _distribution(home: str) -> tuple[str, str]:
