@@ -45,7 +45,8 @@ class Module:
                 base = self._base(node)
                 for alias in node.names:
                     inner = f"{base}.{alias.name}"
-                    yield from (name for name in (inner if inner in names else base,) if name in names)
+                    if inner in names or base in names:
+                        yield inner if inner in names else base
 
     def _base(self, node: ast.ImportFrom) -> str:
         """The module that a `from` names, without dots at its front."""

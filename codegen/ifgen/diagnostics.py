@@ -1,7 +1,7 @@
 """Mistakes in interfaces, as values. Nothing here prints.
 
 A stage collects every `Diagnostic` that it can find and raises them together as one `InputError`.
-How they look (a terminal, JSON, CI annotations) is `cli/report.py`'s business.
+How they look (a terminal, JSON, CI annotations) is `command_kit/report.py`'s business.
 """
 
 from __future__ import annotations

@@ -62,6 +62,14 @@ class NameOptions(GraphOptions):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class NodeOptions(GraphOptions):
+    """The options of a verb that is about one node."""
+
+    node: str
+    include_hidden: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CallOptions(SessionOptions):
     """The options of `service call` and `action send_goal`; a call is repeated at a `rate` [Hz]."""
 

@@ -47,6 +47,36 @@ def test_no_room_is_crowded() -> None:
     assert crowds == {"ifgen_runtime", "ifgen_runtime/bag", "underlay/rclpy", "underlay/rclpy/impl/rcl"}
 
 
+SMALL = {
+    "ifgen.command_kit.failures": "only a run that fails loads it",
+    "ifgen.dynamic.classes": "from a description to a class; making and asking do not know each other",
+    "ifgen.dynamic.derived": "what only bags have: texts of services instead of their messages",
+    "ifgen.pipeline.typings": "`ifgen typings` as `stages` is `ifgen generate`",
+    "ifgen.reading.python_text": "places in Python, beside those in the other kinds of files that are read",
+    "ifgen_runtime.importing": "messages load it, and must stay light",
+    "ifgen_runtime.mismatch.real_rclpy.guarding": "loaded where a policy refuses or adapts",
+    "ifgen_runtime.slot_types": "loaded by who asks for SLOT_TYPES",
+    "ifgen_runtime.undecided": "the names that adapters of users import",
+    "ifgen_tools.launching.reading.python_file": "one kind of launch file",
+    "ifgen_tools.launching.reading.xml_file": "one kind of launch file",
+    "ifgen_tools.running.lockstep": "the one module of the tools that knows the middleware's virtual time",
+    "launch.actions._outputs": "one kind of destination for each of rcl's names, apart from processes",
+    "message_filters._chain": "one filter, under the name of upstream's class",
+    "message_filters._subscriber": "one filter, under the name of upstream's class",
+}
+"""Modules of fewer than 60 lines that one other imports, and why they stand by themselves."""
+
+
+def test_small_modules_have_a_reason() -> None:
+    """Those of rclpy and of libraries have upstream's names."""
+    command = [sys.executable, str(ROOT / "docs/figures.py"), "--small"]
+    listed = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    names = {line.split()[1] for line in listed.stdout.splitlines()}
+    rooms = ("ifgen", "ifgen_pytest", "ifgen_runtime", "ifgen_tools", "rmw_local")
+    ours = {name for name in names if name.startswith(rooms) or "._" in name or ".impl." in name}
+    assert ours == set(SMALL)
+
+
 def test_what_the_walks_name_is_there() -> None:
     page = (ROOT / "docs/architecture.md").read_text().partition("## 5. ")[2].partition("## 6. ")[0]
     steps = re.findall(r"^\d+\. `([^`]+)`", page, re.MULTILINE)

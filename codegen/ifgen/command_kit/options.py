@@ -116,6 +116,13 @@ def hidden_topics_option(command: Command) -> Command:
     )(command)
 
 
+def hidden_nodes_option(command: Command) -> Command:
+    """`--include-hidden-nodes`, as `include_hidden`."""
+    return click.option(
+        "--include-hidden-nodes", "include_hidden", is_flag=True, help="Hidden nodes as well."
+    )(command)
+
+
 def graph_options(command: Command) -> Command:
     """The options of every command that looks at the graph: --transport, --spin-time and --no-daemon."""
     return transport_option(spin_time_option(no_daemon_option(command)))

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-import click
 from ifgen.command_kit.tool import Absent, did_you_mean
 
 from ifgen_tools import discovery
@@ -19,13 +18,6 @@ if TYPE_CHECKING:
 
 _PATIENCE: Final = 5.0
 """Seconds that a named node may take to be discovered."""
-
-
-def hidden_nodes_option(command: Callable[..., Any]) -> Callable[..., Any]:
-    """`--include-hidden-nodes`, as `include_hidden`."""
-    return click.option(
-        "--include-hidden-nodes", "include_hidden", is_flag=True, help="Hidden nodes as well."
-    )(command)
 
 
 def find_node(session: Session, name: str, spin_time: float | None = None) -> str:

@@ -10,7 +10,8 @@ from ifgen.command_kit import options
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
-from ifgen_tools.graph.lookup import hidden_nodes_option
+from ifgen_tools.lifecycle.options import GetOptions, SetOptions, TransitionsOptions
+from ifgen_tools.verbs import ListOptions, takes
 
 # Late imports: each verb loads what it needs.
 
@@ -32,44 +33,48 @@ def _shared(command: Command) -> Command:
 @lifecycle.command(epilog="Example: `ifgen lifecycle nodes`")
 @_shared
 @click.option("-a", "--all", "include_hidden", is_flag=True, help="Hidden nodes as well.")
-@click.option("-c", "--count-nodes", is_flag=True, help="Only how many there are.")
-def nodes(**chosen: Any) -> int:
+@click.option("-c", "--count-nodes", "count", is_flag=True, help="Only how many there are.")
+@takes(ListOptions)
+def nodes(chosen: ListOptions) -> int:
     """Print the names of all lifecycle nodes."""
     from ifgen_tools.lifecycle.states import list_nodes
 
-    return list_nodes(**chosen)
+    return list_nodes(chosen)
 
 
 @lifecycle.command(epilog="Example: `ifgen lifecycle get /camera_driver`")
 @click.argument("node", required=False, shell_complete=completion.nodes)
 @_shared
-@hidden_nodes_option
-def get(**chosen: Any) -> int:
+@options.hidden_nodes_option
+@takes(GetOptions)
+def get(chosen: GetOptions) -> int:
     """Print the state of a lifecycle node, or of all of them."""
     from ifgen_tools.lifecycle.states import get_states
 
-    return get_states(**chosen)
+    return get_states(chosen)
 
 
 @lifecycle.command("list", epilog="Example: `ifgen lifecycle list /camera_driver`")
 @click.argument("node", shell_complete=completion.nodes)
 @_shared
-@hidden_nodes_option
+@options.hidden_nodes_option
 @click.option("-a", "--all", "all_", is_flag=True, help="Those of all states, not only of the present one.")
-def list_(**chosen: Any) -> int:
+@takes(TransitionsOptions)
+def list_(chosen: TransitionsOptions) -> int:
     """Print the transitions of a lifecycle node."""
-    from ifgen_tools.lifecycle.transitions import list_transitions
+    from ifgen_tools.lifecycle.states import list_transitions
 
-    return list_transitions(**chosen)
+    return list_transitions(chosen)
 
 
 @lifecycle.command("set", epilog="Example: `ifgen lifecycle set /camera_driver configure`")
 @click.argument("node", shell_complete=completion.nodes)
 @click.argument("transition", shell_complete=completion.transitions)
 @_shared
-@hidden_nodes_option
-def set_(**chosen: Any) -> int:
+@options.hidden_nodes_option
+@takes(SetOptions)
+def set_(chosen: SetOptions) -> int:
     """Let a lifecycle node go through a transition, which is given by its label or number."""
-    from ifgen_tools.lifecycle.transitions import set_state
+    from ifgen_tools.lifecycle.states import set_state
 
-    return set_state(**chosen)
+    return set_state(chosen)

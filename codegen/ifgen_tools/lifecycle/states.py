@@ -1,33 +1,31 @@
-"""`ifgen lifecycle nodes` and `get`."""
+"""States of lifecycle nodes and the transitions between them, as `ifgen lifecycle` shows and changes them."""
 
 from __future__ import annotations
 
 import json
 import sys
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 from ifgen.command_kit.tool import ToolError
 
+from ifgen_tools.lifecycle.options import GetOptions, SetOptions, TransitionsOptions
 from ifgen_tools.lifecycle.remote import RemoteLifecycle, find_lifecycle_node, lifecycle_nodes
-from ifgen_tools.session import TransportChoice, open_session
+from ifgen_tools.session import open_session
+from ifgen_tools.verbs import ListOptions
+
+if TYPE_CHECKING:
+    from lifecycle_msgs.msg import Transition, TransitionDescription
 
 
-def list_nodes(
-    *,
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    include_hidden: bool = False,
-    count_nodes: bool = False,
-    as_json: bool = False,
-    use_sim_time: bool = False,
-) -> int:
+def list_nodes(chosen: ListOptions) -> int:
     """Print the names of the lifecycle nodes."""
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        session.discover(spin_time)
-        found = lifecycle_nodes(session, include_hidden)
-    if count_nodes:
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        session.discover(chosen.spin_time)
+        found = lifecycle_nodes(session, chosen.include_hidden)
+    if chosen.count:
         print(len(found))
-    elif as_json:
+    elif chosen.as_json:
         print(json.dumps(found, indent=2))
     else:
         for name in found:
@@ -35,35 +33,80 @@ def list_nodes(
     return 0
 
 
-def get_states(
-    *,
-    node: str | None = None,
-    transport: TransportChoice = "auto",
-    spin_time: float | None = None,
-    include_hidden: bool = False,
-    as_json: bool = False,
-    use_sim_time: bool = False,
-) -> int:
+def get_states(chosen: GetOptions) -> int:
     """Print the state of a node, or of all lifecycle nodes."""
     code, found = 0, dict[str, Any]()
-    with open_session(transport, use_sim_time=use_sim_time) as session:
-        if node is None:
-            session.discover(spin_time)
-            nodes = lifecycle_nodes(session, include_hidden)
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        if chosen.node is None:
+            session.discover(chosen.spin_time)
+            nodes = lifecycle_nodes(session, chosen.include_hidden)
         else:
-            nodes = [find_lifecycle_node(session, node, spin_time)]
+            nodes = [find_lifecycle_node(session, chosen.node, chosen.spin_time)]
         for name in nodes:
             try:
                 state = RemoteLifecycle(session, name).state()
             except ToolError as error:
-                if node is not None:
+                if chosen.node is not None:
                     raise
                 code = 1  # the others are shown nevertheless
                 print(f"error: {error.message}", file=sys.stderr)
                 continue
             found[name] = {"label": state.label, "id": state.id}
-            if not as_json:
-                print(f"{'' if node else f'{name}: '}{state.label} [{state.id}]")
-    if as_json:
+            if not chosen.as_json:
+                print(f"{'' if chosen.node else f'{name}: '}{state.label} [{state.id}]")
+    if chosen.as_json:
         print(json.dumps(found, indent=2))
     return code
+
+
+def list_transitions(chosen: TransitionsOptions) -> int:
+    """Print the transitions out of a node's state, or all of them."""
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        remote = RemoteLifecycle(session, find_lifecycle_node(session, chosen.node, chosen.spin_time))
+        found = remote.transitions(chosen.all_)
+    if chosen.as_json:
+        print(json.dumps([_plain(each) for each in found], indent=2))
+        return 0
+    for each in found:
+        print(f"- {each.transition.label} [{each.transition.id}]")
+        print(f"\tStart: {each.start_state.label}")
+        print(f"\tGoal: {each.goal_state.label}")
+    return 0
+
+
+def set_state(chosen: SetOptions) -> int:
+    """Go through a transition. Returns 1 if the node has failed to."""
+    with open_session(chosen.transport, use_sim_time=chosen.use_sim_time) as session:
+        remote = RemoteLifecycle(session, find_lifecycle_node(session, chosen.node, chosen.spin_time))
+        available = [each.transition for each in remote.transitions()]
+        successful = remote.change(_asked(remote.node, available, chosen.transition))
+        state = remote.state() if chosen.as_json else None
+    if state is not None:
+        print(json.dumps({"successful": successful, "state": {"label": state.label, "id": state.id}}))
+    elif successful:
+        print("Transitioning successful")
+    else:
+        print("Transitioning failed", file=sys.stderr)
+    return 0 if successful else 1
+
+
+def _asked(node: str, available: Sequence[Transition], wanted: str) -> Transition:
+    """The transition of a label or, if none has it, of a number."""
+    for each in available:
+        if each.label == wanted:
+            return each
+    for each in available:
+        if str(each.id) == wanted:
+            return each
+    short = wanted if len(wanted) <= 60 else f"{wanted[:57]}..."
+    known = ", ".join(f"{each.label} [{each.id}]" for each in available)
+    raise ToolError(f"{node!r} has no transition '{short}' now", f"available ones are: {known or 'none'}")
+
+
+def _plain(description: TransitionDescription) -> dict[str, object]:
+    return {
+        "label": description.transition.label,
+        "id": description.transition.id,
+        "start": {"label": description.start_state.label, "id": description.start_state.id},
+        "goal": {"label": description.goal_state.label, "id": description.goal_state.id},
+    }

@@ -12,7 +12,6 @@ from ifgen.command_kit.options import Command
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
-from ifgen_tools.graph.lookup import hidden_nodes_option
 from ifgen_tools.param.options import (
     DescribeOptions,
     GetOptions,
@@ -37,7 +36,7 @@ def _node_options(command: Command) -> Command:
     """The options of every verb, as in ROS."""
     for option in (
         options.json_option,
-        hidden_nodes_option,
+        options.hidden_nodes_option,
         options.use_sim_time_option,
         options.graph_options,
     ):

@@ -10,9 +10,9 @@ from ifgen.command_kit.tool import ToolError
 from ifgen_runtime.printable import printable
 
 from ifgen_tools import discovery
-from ifgen_tools.graph.reading import is_hidden
+from ifgen_tools.graph.reading import is_hidden, read
 from ifgen_tools.param.client import json_value, remote_parameters
-from ifgen_tools.top.graph import Graph, look
+from ifgen_tools.top.graph import Graph, graph_of
 from ifgen_tools.top.listening import Listener, OnMessage, Tap
 from ifgen_tools.top.snapshot import NodeRow, Parameters, Snapshot, SubscriptionRow, TopicRow
 from ifgen_tools.top.stats import Report, Stats, compare, read_report
@@ -83,7 +83,8 @@ class Collector:
     def step(self) -> Snapshot:
         """The system as it is now; rates are those since the last step."""
         node = self._session.node
-        graph = look(node, include_hidden=self._include_hidden)
+        view = read(node)
+        graph = graph_of(view if self._include_hidden else view.visible())
         earlier = self._reports
         if self._session.transport == "local":
             self._ask(set(graph.nodes))

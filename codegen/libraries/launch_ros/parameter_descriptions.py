@@ -15,8 +15,6 @@ from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions, performed
 
-from launch_ros._template import filled
-
 __all__ = ["Parameter", "ParameterFile", "ParameterValue"]
 
 _SCALARS = (bool, int, float, str)
@@ -48,7 +46,7 @@ class ParameterFile:
         path = perform_substitutions(context, self.param_file)
         if performed(context, self.allow_substs).lower() not in {"true", "1"}:
             return Path(path)
-        file: str = context.host.text_file(filled(path, context))
+        file: str = context.host.text_file(_filled(path, context))
         entries: dict[str, parameter_yaml.Entry] = {}
         try:
             parameter_yaml.read_file(file, lambda node: entries.setdefault(node, {}))
@@ -164,3 +162,12 @@ def _uniform(values: Sequence[Any]) -> list[Any]:
     if len(kinds) > 1:
         return [str(value) for value in values]
     return list(values)
+
+
+def _filled(path: str, context: LaunchContext) -> str:
+    """Return the text of a file with its substitutions performed. Raises RuntimeError."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise RuntimeError(f"cannot read the parameter file '{path}': {error}") from None
+    return context.host.fill(text, path)

@@ -6,7 +6,7 @@ import json
 
 import pytest
 import rclpy
-from ifgen_tools.node import commands
+from ifgen_tools.node import show
 from rclpy.node import Node
 
 from tests.cli.conftest import Run
@@ -79,5 +79,5 @@ def test_unknown_node(ifgen: Run, robot: Node) -> None:
 
 
 def test_a_node_that_goes_meanwhile(ifgen: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(commands, "find_node", lambda *_: "/gone")
+    monkeypatch.setattr(show, "find_node", lambda *_: "/gone")
     assert "the node '/gone' has just gone" in ifgen("node", "info", "/gone").err

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ifgen_runtime.errors import ServerGoneError
 from rmw_local.domain import endpoints
@@ -26,8 +26,39 @@ from .service_introspection import (
 )
 from .structs import rmw_request_id_t, rmw_service_info_t
 
+if TYPE_CHECKING:
+    from rmw_local.service import ServiceEndpoint
 
-class Client(SourceHandle, EndpointHandle):
+
+class _ServiceHandle(SourceHandle, EndpointHandle):
+    """Either end of a service."""
+
+    _endpoint: ServiceEndpoint
+    _introspection: Introspection | None = None
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        pyqos_service_event_pub: object,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Switch the events about what this end sends and receives."""
+        self._introspection = Introspection.switch(
+            self._introspection,
+            self._node,
+            self._endpoint,
+            clock,
+            pyqos_service_event_pub,
+            introspection_state,
+        )
+
+    def _on_destroy(self) -> None:
+        super()._on_destroy()
+        if self._introspection is not None:
+            self._introspection.close()
+
+
+class Client(_ServiceHandle):
     """Asks one service. Raises ValueError for a bad name, RCLError for anything else that is wrong."""
 
     def __init__(self, node: object, pysrv_type: type[Any], service_name: str, pyqos_profile: object) -> None:
@@ -41,8 +72,8 @@ class Client(SourceHandle, EndpointHandle):
             lambda place, name: place.create_client(kind, name, profile),
             GraphNode.close_service_endpoint,
         )
+        self._endpoint = self._client
         self._use(self._client)
-        self._introspection: Introspection | None = None
 
     @property
     def service_name(self) -> str:
@@ -92,24 +123,8 @@ class Client(SourceHandle, EndpointHandle):
         request = rmw_request_id_t(number, self._client.gid)
         return rmw_service_info_t(0, 0, request), ServerGoneError(reason)
 
-    def configure_introspection(
-        self,
-        clock: Clock,
-        pyqos_service_event_pub: object,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Switch the events about requests sent and responses received."""
-        self._introspection = Introspection.switch(
-            self._introspection, self._node, self._client, clock, pyqos_service_event_pub, introspection_state
-        )
 
-    def _on_destroy(self) -> None:
-        super()._on_destroy()
-        if self._introspection is not None:
-            self._introspection.close()
-
-
-class Service(SourceHandle, EndpointHandle):
+class Service(_ServiceHandle):
     """Answers one service. Raises ValueError for a bad name, RCLError for anything else that is wrong."""
 
     def __init__(self, node: object, pysrv_type: type[Any], service_name: str, pyqos_profile: object) -> None:
@@ -124,8 +139,8 @@ class Service(SourceHandle, EndpointHandle):
             lambda place, name: place.create_server(kind, name, profile),
             GraphNode.close_service_endpoint,
         )
+        self._endpoint = self._server
         self._use(self._server)
-        self._introspection: Introspection | None = None
 
     @property
     def name(self) -> str:
@@ -163,22 +178,6 @@ class Service(SourceHandle, EndpointHandle):
     def fail(self, header: rmw_request_id_t, reason: str) -> None:
         """Let the client know that there will be no response; nothing happens if it has one, or is gone."""
         self._server.fail(header.writer_guid, header.sequence_number, reason)
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        pyqos_service_event_pub: object,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Switch the events about requests received and responses sent."""
-        self._introspection = Introspection.switch(
-            self._introspection, self._node, self._server, clock, pyqos_service_event_pub, introspection_state
-        )
-
-    def _on_destroy(self) -> None:
-        super()._on_destroy()
-        if self._introspection is not None:
-            self._introspection.close()
 
 
 _HASH = len("RIHS01_") + 64
