@@ -27,6 +27,7 @@ class Plugin:
     distribution: str | None = None
 
     def load(self) -> object:
+        """Import the module, and return what the entry point names."""
         module, _, attribute = self.value.partition(":")
         return getattr(import_module(module), attribute)
 
