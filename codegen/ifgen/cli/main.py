@@ -113,10 +113,10 @@ class _Commands(click.Group):
         """As click does, but the commands that are elsewhere are suggested too."""
         name = args[0]
         if not (ctx.resilient_parsing or name.startswith("-") or self.get_command(ctx, name)):
-            from difflib import get_close_matches
+            from ifgen.command_kit.tool import did_you_mean  # late: only a mistake needs it
 
-            near = " or ".join(map(repr, get_close_matches(name, self.list_commands(ctx))))
-            meant = f" Did you mean {near}?" if near else ""
+            near = did_you_mean(name, self.list_commands(ctx), cutoff=0.6)
+            meant = f" D{near[1:]}" if near else ""
             raise click.UsageError(f"No such command {name!r}.{meant}", ctx)
         return super().resolve_command(ctx, args)
 

@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from ifgen.command_kit import completion, terminal
 from ifgen.command_kit.options import include_option
-from ifgen.config.settings import settle
-
-if TYPE_CHECKING:
-    from ifgen.reading.search_path import SearchPath
 
 # Late imports: `ifgen --help` loads this module, and does without the compiler.
 
@@ -29,7 +24,7 @@ def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
     """
     from ifgen.pipeline import lookup
 
-    search = _search(include)
+    search = lookup.search_path(include)
     if names := lookup.types_in(type_, search):
         if as_json:
             message = f"--json describes one TYPE, and {type_} is a package"
@@ -62,18 +57,9 @@ def hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
     from ifgen.definition.type_description import type_hash
     from ifgen.pipeline import lookup
 
-    search = _search(include)
+    search = lookup.search_path(include)
     described, registry, errors = lookup.find_what_can_be(names or search.package_names(), search)
     for interface in described:
         print(f"{interface.type_name} {type_hash(interface, registry)}")
     terminal.print_diagnostics(errors, stderr=True)
     return int(bool(errors))
-
-
-def _search(include: tuple[Path, ...]) -> SearchPath:
-    """The search path for types by name, the configured paths first."""
-    from ifgen.reading.packages import find_packages
-    from ifgen.reading.search_path import SearchPath
-
-    settings = settle(None, None, include)
-    return SearchPath(find_packages(settings.paths), settings.include)
