@@ -18,6 +18,7 @@ BOTH_CODECS := $(addprefix tests/,against_rosidl/test_classes.py \
 # The packages that nodes import besides rclpy.
 LIBRARIES := $(patsubst codegen/libraries/%/__init__.py,%,$(wildcard codegen/libraries/*/__init__.py))
 CASES := 1000000
+TEST_MSGS := generated/test_msgs/.ifgen-manifest.json
 # Whether pictures can be drawn here: the demo does without them where there is no OpenGL.
 CAN_DRAW = PYTHONPATH=examples/humanoid $(BIN)/python -c \
 	'from humanoid.simulation.rendering import check; check()' 2>/dev/null
@@ -97,8 +98,13 @@ $(VENV)/.run: pyproject.toml $(wildcard codegen/*/pyproject.toml) .ci/make_venv.
 	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim]'
 	@touch $@
 
-$(VENV)/.test: $(VENV)/.run $(VENV)/.native
+$(VENV)/.test: $(VENV)/.run $(VENV)/.native | $(TEST_MSGS)
 	$(BIN)/python -m pip install --quiet --editable codegen/runtime --editable '.[sim,tools]' --group dev --group $(REFERENCE)
+	@touch $@
+
+# Messages that only tests need: not committed, and in no wheel.
+$(TEST_MSGS): $(wildcard interfaces/test_msgs/*/*) | $(VENV)/.run
+	$(BIN)/ifgen generate --quiet interfaces/test_msgs
 	@touch $@
 
 # The type support for real rclpy: C, so only where there is a compiler, and a ROS to use it with.

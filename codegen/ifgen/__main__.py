@@ -22,9 +22,9 @@ def _code_of_interruption() -> int:
     import signal  # late: most runs are not interrupted
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # it ends now
-    from ifgen.cli import further  # late: what Ctrl-C cuts short may fail in any way
+    from ifgen.cli import plugins  # late: what Ctrl-C cuts short may fail in any way
 
-    return 2 if further.ends_as_tools_do(sys.argv[1:]) else 130
+    return 2 if plugins.ends_as_tools_do(sys.argv[1:]) else 130
 
 
 if __name__ == "__main__":

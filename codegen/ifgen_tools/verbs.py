@@ -63,10 +63,11 @@ class NameOptions(GraphOptions):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class NodeOptions(GraphOptions):
-    """The options of a verb that is about one node."""
+    """The options of a verb about one node, which may take `patience` [s] to answer; None is for ever."""
 
     node: str
     include_hidden: bool = False
+    patience: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,6 +10,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 _SOURCES = {"ifgen_runtime": "..", "libraries": "..", "underlay": "..", "generated": "../.."}
 _TESTS = "test"
+_FOR_TESTS = "test_msgs"
 _ONLY_PACKAGES_OF_NODES_HAVE = "setup.py"
 
 
@@ -38,7 +39,11 @@ class Layout(BuildHookInterface):  # type: ignore[type-arg]  # hatchling's own d
 
 
 def _of_message_packages(generated: Path) -> Iterator[Path]:
-    """The files in each package of messages, without its tests; those of nodes go with the demo."""
+    """The files in each package of messages, without its tests; those of nodes go with the demo.
+
+    A checkout has the messages of our own tests only after `make test`.
+    """
     for package in sorted(generated.glob("[!.]*")):
-        if package.is_dir() and not (package / _ONLY_PACKAGES_OF_NODES_HAVE).exists():
+        is_of_nodes = (package / _ONLY_PACKAGES_OF_NODES_HAVE).exists()
+        if package.is_dir() and not is_of_nodes and package.name != _FOR_TESTS:
             yield from (entry for entry in sorted(package.iterdir()) if entry.name != _TESTS)

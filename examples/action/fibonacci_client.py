@@ -7,13 +7,13 @@ import sys
 
 import rclpy
 from action_msgs.msg import GoalStatus
+from example_interfaces.action import Fibonacci
 from rclpy.action import ActionClient
 from rclpy.action.client import ClientGoalHandle
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.task import Future
 from rclpy.utilities import remove_ros_args
-from test_msgs.action import Fibonacci
 
 STATUS_NAMES = {
     GoalStatus.STATUS_SUCCEEDED: "succeeded",

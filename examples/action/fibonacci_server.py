@@ -6,12 +6,12 @@
 import time
 
 import rclpy
+from example_interfaces.action import Fibonacci
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
-from test_msgs.action import Fibonacci
 
 STEP = 0.1  # [s] between two numbers
 

@@ -12,7 +12,8 @@ from ifgen.cli.main import commands
 
 def leaves() -> Iterator[tuple[str, click.Command]]:
     """Every command of ours that does something, as `ifgen topic list`."""
-    others = {each.name for each in entry_points(group="ifgen.commands") if "ifgen_tools" not in each.value}
+    points = entry_points(group="ifgen.commands")
+    others = {point.name for point in points if not point.value.startswith(("ifgen.", "ifgen_tools."))}
     context = click.Context(commands)
     for name in commands.list_commands(context):
         command = commands.get_command(context, name)

@@ -7,7 +7,7 @@ import sys
 
 import click
 import pytest
-from ifgen.cli import further
+from ifgen.cli import plugins
 from ifgen.command_kit.tool import ToolError, ToolGroup
 from ifgen.signals import Terminated
 
@@ -77,9 +77,9 @@ class HalfMade:
     ],
 )
 def test_ends(ifgen: Run, monkeypatch: pytest.MonkeyPatch, what: str, code: int, said: str) -> None:
-    monkeypatch.setattr(further, "names", lambda: ["tool"])
+    monkeypatch.setattr(plugins, "names", lambda: ["tool"])
     # pytest's own keeps what it hears to itself.
     monkeypatch.setattr(sys, "unraisablehook", sys.__unraisablehook__)
-    monkeypatch.setattr(further, "command", lambda name: tool if name == "tool" else None)
+    monkeypatch.setattr(plugins, "command", lambda name: tool if name == "tool" else None)
     done = ifgen("tool", "end", what)
     assert (done.code, done.out, done.err) == (code, "", said)

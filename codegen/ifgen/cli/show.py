@@ -1,83 +1,65 @@
-"""An interface as resolved, in the manner of `ros2 interface show`: nested types stand below their field."""
+"""The commands `ifgen show` and `ifgen hash`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from pathlib import Path
 
-from ifgen.definition.interfaces import Constant, Field, Message, Registry, Service
-from ifgen.definition.spelling import spelled, spelled_value
-from ifgen.definition.type_description import Described, type_hash
-from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
+import click
 
-_INDENT = "    "
-_WIDTH = 80
+from ifgen.command_kit import completion, terminal
+from ifgen.command_kit.options import include_option
 
-
-def lines(described: Described, registry: Registry) -> Iterator[str]:
-    """Type name, hash and documentation, then the fields; `---` between the parts of a service or action."""
-    yield described.type_name
-    yield type_hash(described, registry)
-    yield ""
-    if described.documentation:
-        yield from _comment(described.documentation, "")
-        yield ""
-    for index, part in enumerate(_parts(described)):
-        if index:
-            yield "---"
-        if part.documentation != described.documentation:
-            yield from _comment(part.documentation, "")
-        yield from _message(part, registry, "", with_comments=True)
+# Late imports: `ifgen --help` loads this module, and does without the compiler.
 
 
-def definition(described: Described, registry: Registry) -> Iterator[str]:
-    """Type name, hash, fields and constants without any comment."""
-    yield described.type_name
-    yield type_hash(described, registry)
-    for index, part in enumerate(_parts(described)):
-        if index:
-            yield "---"
-        yield from _message(part, registry, "", with_comments=False)
+@click.command(epilog="Example: ifgen show geometry_msgs/msg/Pose")
+@click.argument("type_", metavar="TYPE|PACKAGE", shell_complete=completion.types_and_packages)
+@include_option
+@click.option("--json", "as_json", is_flag=True, help="Print the ROS type description instead.")
+def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
+    """Print an interface with its nested types and its type hash.
+
+    TYPE is a name such as geometry_msgs/msg/Pose, or Pose if only one type has that name. For a PACKAGE, it
+    lists the names of its types.
+    """
+    from ifgen.pipeline import lookup
+
+    search = lookup.search_path(include)
+    if names := lookup.types_in(type_, search):
+        if as_json:
+            message = f"--json describes one TYPE, and {type_} is a package"
+            raise click.UsageError(message, click.get_current_context())
+        print("\n".join(names))
+        return 0
+    described, registry = lookup.find_type(type_, search)
+    if as_json:
+        import json
+
+        from ifgen.definition.type_description import describe
+
+        print(json.dumps(describe(described, registry), indent=2))
+    else:
+        from ifgen.cli import interface_text
+
+        print("\n".join(interface_text.lines(described, registry)))
+    return 0
 
 
-def _parts(described: Described) -> tuple[Message, ...]:
-    match described:
-        case Message():
-            return (described,)
-        case Service():
-            return (described.request, described.response)
-        case _:
-            return (described.goal, described.result, described.feedback)
+@click.command("hash", epilog="Example: ifgen hash std_srvs/srv/Trigger")
+@click.argument("names", metavar="[TYPE|PACKAGE]...", nargs=-1, shell_complete=completion.types_and_packages)
+@include_option
+def hashes(names: tuple[str, ...], include: tuple[Path, ...]) -> int:
+    """Print type hashes, including those of derived types.
 
+    TYPE is a name such as std_msgs/msg/String, PACKAGE one such as std_msgs. The default is every type that
+    ifgen finds. If some types have no hash, because of mistakes, it reports them at the end and exits with 1.
+    """
+    from ifgen.definition.type_description import type_hash
+    from ifgen.pipeline import lookup
 
-def _message(message: Message, registry: Registry, indent: str, *, with_comments: bool) -> Iterator[str]:
-    """The constants and fields of a message; a nested message's comments are its own affair."""
-    for constant in message.constants:
-        text = f"{spelled(constant.type, message.package)} {constant.name}={spelled_value(constant.value)}"
-        yield from _with_comment(text, constant, indent, with_comments=with_comments)
-    for field in message.fields:
-        default = "" if field.default_value is None else f" {spelled_value(field.default_value)}"
-        text = f"{spelled(field.type, message.package)} {field.name}{default}"
-        yield from _with_comment(text, field, indent, with_comments=with_comments)
-        value_type = field.type
-        if isinstance(value_type, Array | BoundedSequence | UnboundedSequence):
-            value_type = value_type.value_type
-        if isinstance(value_type, NamespacedType):
-            nested = registry.message(value_type.type_name)
-            yield from _message(nested, registry, indent + _INDENT, with_comments=False)
-
-
-def _with_comment(
-    text: str, described: Field | Constant, indent: str, *, with_comments: bool
-) -> Iterator[str]:
-    unit = f" [{described.unit}]" if described.unit else ""
-    comment = described.documentation + unit if with_comments else ""
-    beside = f"{indent}{text}  # {comment.strip()}" if comment.strip() else indent + text
-    if "\n" in comment or len(beside) > _WIDTH:
-        yield from _comment(comment, indent)
-        beside = indent + text
-    yield beside
-
-
-def _comment(documentation: str, indent: str) -> Iterator[str]:
-    for line in documentation.splitlines():
-        yield f"{indent}# {line}".rstrip()
+    search = lookup.search_path(include)
+    described, registry, errors = lookup.find_what_can_be(names or search.package_names(), search)
+    for interface in described:
+        print(f"{interface.type_name} {type_hash(interface, registry)}")
+    terminal.print_diagnostics(errors, stderr=True)
+    return int(bool(errors))

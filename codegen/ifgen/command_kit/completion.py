@@ -79,24 +79,48 @@ def _packages(context: click.Context, typed: str) -> Iterator[PackageFiles]:
             yield package
 
 
-def _types(package: PackageFiles) -> list[str]:
-    return sorted(f"{package.name}/{file.folder}/{file.name}" for file in package.known_files())
+def _types(packages: Iterable[PackageFiles], folder: str = "") -> Iterator[str]:
+    for package in packages:
+        files = (file for file in package.known_files() if folder in ("", file.folder))
+        yield from sorted(f"{package.name}/{file.folder}/{file.name}" for file in files)
 
 
 @completing
 def types(context: click.Context, typed: str) -> Iterator[str]:
     """Names of types: `std_msgs/msg/String`."""
-    for package in _packages(context, typed):
-        yield from _types(package)
+    return _types(_packages(context, typed))
+
+
+@completing
+def message_types(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of messages."""
+    return _types(_packages(context, typed), "msg")
+
+
+@completing
+def service_types(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of services' types."""
+    return _types(_packages(context, typed), "srv")
+
+
+@completing
+def action_types(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of actions' types."""
+    return _types(_packages(context, typed), "action")
+
+
+@completing
+def packages(context: click.Context, typed: str) -> Iterator[str]:
+    """Names of packages that have types."""
+    return (package.name for package in _packages(context, typed))
 
 
 @completing
 def types_and_packages(context: click.Context, typed: str) -> Iterator[str]:
     """Names of packages that have types, and of these."""
-    packages = list(_packages(context, typed))
-    yield from (package.name for package in packages)
-    for package in packages:
-        yield from _types(package)
+    there = list(_packages(context, typed))
+    yield from (package.name for package in there)
+    yield from _types(there)
 
 
 @completing

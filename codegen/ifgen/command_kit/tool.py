@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Final
 
 import click
@@ -25,11 +26,11 @@ class Absent(ToolError):
     """The error that a node, or what nodes have, is not there: it may be on the other transport."""
 
 
-def did_you_mean(name: str, known: list[str]) -> str:
+def did_you_mean(name: str, candidates: Iterable[str], *, limit: int = 3, cutoff: float = 0.5) -> str:
     """Advice that names what is spelled like `name`; empty if nothing is."""
     from difflib import get_close_matches  # only a mistake needs it
 
-    near = get_close_matches(name, known, n=3, cutoff=0.5)
+    near = get_close_matches(name, list(candidates), n=limit, cutoff=cutoff)
     return f"did you mean {' or '.join(map(repr, near))}?" if near else ""
 
 

@@ -5,13 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from pathlib import Path
 
+from ifgen.config.settings import settle
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.resolve import resolve, resolve_what_can_be
 from ifgen.definition.type_description import Described, described_types, messages_of
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.reading.packages import FOLDERS, InterfaceFile, PackageFiles
+from ifgen.reading.packages import FOLDERS, InterfaceFile, PackageFiles, find_packages
 from ifgen.reading.search_path import SearchPath
+
+
+def search_path(include: tuple[Path, ...]) -> SearchPath:
+    """Where commands look for types by name: the paths of the configuration first."""
+    settings = settle(None, None, include)
+    return SearchPath(find_packages(settings.paths), settings.include)
 
 
 def find_type(name: str, search: SearchPath) -> tuple[Described, Registry]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 from ifgen.command_kit import options
+from ifgen.command_kit.completion import action_types
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
@@ -25,9 +26,9 @@ def action() -> None:
 @takes(ListOptions)
 def list_(chosen: ListOptions) -> None:
     """Print the names of all actions."""
-    from ifgen_tools.action.list import list_actions
+    from ifgen_tools.graph.services import print_list
 
-    list_actions(chosen)
+    print_list("action", chosen)
 
 
 @action.command("type", epilog="Example: ifgen action type /walk")
@@ -37,22 +38,22 @@ def list_(chosen: ListOptions) -> None:
 @takes(NameOptions)
 def type_(chosen: NameOptions) -> None:
     """Print the type of an action."""
-    from ifgen_tools.action.list import print_type
+    from ifgen_tools.graph.services import print_type
 
-    print_type(chosen)
+    print_type("action", chosen)
 
 
 @action.command(epilog="Example: ifgen action find example_interfaces/action/Fibonacci")
-@click.argument("type_name", metavar="TYPE", shell_complete=completion.action_types)
+@click.argument("type_name", metavar="TYPE", shell_complete=action_types)
 @options.graph_options
 @click.option("-c", "--count-actions", "--count", "count", is_flag=True, help="Only how many there are.")
 @options.json_option
 @takes(FindOptions)
 def find(chosen: FindOptions) -> None:
     """Print the actions of a type."""
-    from ifgen_tools.action.list import find_actions
+    from ifgen_tools.graph.services import print_those_of_type
 
-    find_actions(chosen)
+    print_those_of_type("action", chosen)
 
 
 @action.command(epilog="Example: ifgen action info /walk -t")
@@ -64,7 +65,7 @@ def find(chosen: FindOptions) -> None:
 @takes(NameOptions)
 def info(chosen: NameOptions) -> None:
     """Print the nodes that serve an action, and those that send goals to it."""
-    from ifgen_tools.action.list import action_info
+    from ifgen_tools.graph.services import action_info
 
     action_info(chosen)
 
@@ -74,7 +75,7 @@ def info(chosen: NameOptions) -> None:
     epilog="Example: ifgen action send_goal /count example_interfaces/action/Fibonacci '{order: 3}' -f",
 )
 @click.argument("name", metavar="ACTION", shell_complete=completion.actions)
-@click.argument("type_name", metavar="TYPE", shell_complete=completion.action_types)
+@click.argument("type_name", metavar="TYPE", shell_complete=action_types)
 @click.argument("values", metavar="[GOAL]", required=False)
 @click.option("--stdin", "from_stdin", is_flag=True, help="Read the goal from stdin.")
 @click.option("-f", "--feedback", is_flag=True, help="Print feedback as well.")

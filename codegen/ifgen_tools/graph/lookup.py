@@ -1,17 +1,14 @@
-"""Nodes, services and actions by the names that a user writes, and how they are listed."""
+"""Nodes by the names that a user writes."""
 
 from __future__ import annotations
 
-import json
 import sys
-from collections.abc import Iterable
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Final
 
 from ifgen.command_kit.tool import Absent, did_you_mean
 
 from ifgen_tools import discovery
-from ifgen_tools.graph.reading import Named, node_names
+from ifgen_tools.graph.reading import node_names
 
 if TYPE_CHECKING:
     from ifgen_tools.session import Session
@@ -49,34 +46,3 @@ def find_node(session: Session, name: str, spin_time: float | None = None) -> st
         "see `ifgen node list`" if known else "no node is running, or none that this process can see"
     )
     raise Absent(f"there is no node {wanted!r}", advice)
-
-
-def pick(found: Iterable[Named], name: str, what: str) -> Named:
-    """The one of this name; `what` is `service` or `action`. Raises ToolError that names near ones."""
-    known = {each.name: each for each in found}
-    full = name if name.startswith("/") else f"/{name}"
-    if full not in known:
-        near = did_you_mean(full, sorted(known))
-        raise Absent(f"there is no {what} {full!r}", near or f"see `ifgen {what} list`")
-    return known[full]
-
-
-def of_type(found: Iterable[Named], type_name: str, kind: str) -> list[Named]:
-    """Those with a type, `pkg/srv/Name` or for short `pkg/Name`; `kind` is `srv` or `action`."""
-    package, _, name = type_name.partition("/")
-    wanted = type_name if "/" in name else f"{package}/{kind}/{name}"
-    return [each for each in found if wanted in each.types]
-
-
-def print_named(
-    found: Iterable[Named], *, show_types: bool = False, count: bool = False, as_json: bool = False
-) -> None:
-    """Print a line for each, or only how many there are."""
-    found = list(found)
-    if count:
-        print(len(found))
-    elif as_json:
-        print(json.dumps([asdict(each) for each in found], indent=2))
-    else:
-        for each in found:
-            print(f"{each.name} [{', '.join(each.types)}]" if show_types else each.name)

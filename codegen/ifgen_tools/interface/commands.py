@@ -6,15 +6,20 @@ import json
 import sys
 from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 import click
-from ifgen.command_kit import options
-from ifgen.command_kit.tool import ToolGroup
+from ifgen.command_kit import completion, options
+from ifgen.command_kit.tool import ToolError, ToolGroup, did_you_mean
 
-from ifgen_tools import completion
 from ifgen_tools.verbs import TransportChoice
 
+if TYPE_CHECKING:
+    from ifgen.reading.search_path import SearchPath
+
 # Late imports: each verb loads what it needs.
+
+_HEADINGS: Final = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
 
 @click.group(cls=ToolGroup)
@@ -33,62 +38,56 @@ def _only(command: options.Command) -> options.Command:
     return command
 
 
-def _include(command: options.Command) -> options.Command:
-    """`-I DIR`, as `include`."""
-    folder = click.Path(exists=True, file_okay=False, path_type=Path)
-    help = "Also look in this folder; may be repeated."
-    return click.option("-I", "--include", metavar="DIR", multiple=True, type=folder, help=help)(command)
-
-
 @interface.command("list", epilog="Example: ifgen interface list --only-actions")
 @_only
-@_include
+@options.include_option
 @options.json_option
 def list_(include: tuple[Path, ...], as_json: bool, **only: bool) -> None:
     """Print the names of all interfaces."""
-    from ifgen_tools.interface import finding
+    from ifgen.pipeline.lookup import search_path
 
-    kinds = _kinds(**only)
-    found = [each for each in finding.all_types(finding.search_path(include)) if each[0] in kinds]
+    kinds, search = _kinds(**only), search_path(include)
+    names = {package: _types_in(package, search) for package in search.package_names()}
     if as_json:
-        _print_json([name for _, name in found])
+        _print_json([name for types in names.values() for kind, name in types if kind in kinds])
         return
     for kind in kinds:
-        print(f"{finding.HEADINGS[kind]}:")
-        for name in (name for of_kind, name in found if of_kind == kind):
-            print(f"    {name}")
+        print(f"{_HEADINGS[kind]}:")
+        for types in names.values():
+            print("".join(f"    {name}\n" for of_kind, name in types if of_kind == kind), end="")
 
 
 @interface.command(epilog="Example: ifgen interface package std_srvs")
 @click.argument("package_name", metavar="PACKAGE", shell_complete=completion.packages)
 @_only
-@_include
+@options.include_option
 @options.json_option
 def package(package_name: str, include: tuple[Path, ...], as_json: bool, **only: bool) -> None:
     """Print the names of the interfaces of one package."""
-    from ifgen_tools.interface import finding
+    from ifgen.pipeline.lookup import search_path
 
-    kinds = _kinds(**only)
-    found = finding.types_of(package_name, finding.search_path(include))
-    _print_names((name for kind, name in found if kind in kinds), as_json)
+    kinds, types = _kinds(**only), _types_in(package_name, search_path(include))
+    _print_names((name for kind, name in types if kind in kinds), as_json)
 
 
 @interface.command(epilog="Example: ifgen interface packages --only-actions")
 @_only
-@_include
+@options.include_option
 @options.json_option
 def packages(include: tuple[Path, ...], as_json: bool, **only: bool) -> None:
     """Print the names of the packages that have interfaces."""
-    from ifgen_tools.interface import finding
+    from ifgen.pipeline.lookup import search_path
 
-    _print_names(finding.packages_with(_kinds(**only), finding.search_path(include)), as_json)
+    kinds, search = _kinds(**only), search_path(include)
+    there = (p for p in search.package_names() if any(kind in kinds for kind, _ in _types_in(p, search)))
+    _print_names(there, as_json)
 
 
 @interface.command(epilog="Example: ifgen interface show geometry_msgs/msg/PoseStamped")
 @click.argument("type_", metavar="TYPE", shell_complete=completion.types)
 @click.option("--all-comments", is_flag=True, help="The comments of nested messages as well.")
 @click.option("--no-comments", is_flag=True, help="No comments, and no blank lines.")
-@_include
+@options.include_option
 @click.option("--json", "as_json", is_flag=True, help="Print the type description of ROS instead.")
 def show(type_: str, all_comments: bool, no_comments: bool, include: tuple[Path, ...], as_json: bool) -> None:
     """Print the definition of an interface.
@@ -96,12 +95,18 @@ def show(type_: str, all_comments: bool, no_comments: bool, include: tuple[Path,
     The definition of a nested message is below its field. A TYPE of `-` is read from a pipe, as in
     `ifgen topic type /chatter | ifgen interface show -`.
     """
-    from ifgen_tools.interface import finding
+    from ifgen.diagnostics import UsageError
+    from ifgen.pipeline.lookup import find_type, search_path
+
     from ifgen_tools.interface.definitions import shown
 
     if all_comments and no_comments:
         raise click.UsageError("--all-comments and --no-comments exclude each other")
-    described, registry = finding.find(_from_pipe(type_), finding.search_path(include))
+    try:
+        described, registry = find_type(_from_pipe(type_), search_path(include))
+    except UsageError as error:
+        first = error.diagnostics[0]
+        raise ToolError(first.message, first.help or "") from None
     if as_json:
         from ifgen.definition.type_description import describe
 
@@ -136,6 +141,17 @@ def proto(type_: str, no_quotes: bool, transport: TransportChoice, as_json: bool
         return
     text = as_yaml(message)
     print(text if no_quotes else f'"{text}"')
+
+
+def _types_in(package_name: str, search: SearchPath) -> list[tuple[str, str]]:
+    """Kind and name of the types in a package, sorted by name. ToolError if there is no such package."""
+    package = search.package(package_name)
+    files = package.known_files() if package else []
+    if not files:
+        near = did_you_mean(package_name, search.package_names())
+        raise ToolError(f"unknown package {package_name!r}", near or "see `ifgen interface packages`")
+    pairs = {(file.folder, f"{package_name}/{file.folder}/{file.name}") for file in files}
+    return sorted(pairs, key=lambda pair: pair[1])
 
 
 def _from_pipe(name: str) -> str:

@@ -15,12 +15,11 @@ from ifgen_tools import completion
 from ifgen_tools.param.options import (
     DescribeOptions,
     GetOptions,
-    ListOptions,
     LoadOptions,
-    NodeOptions,
+    ParamListOptions,
     SetOptions,
 )
-from ifgen_tools.verbs import ManyCommand, ManyOption, takes
+from ifgen_tools.verbs import ManyCommand, ManyOption, NodeOptions, takes
 
 # Late imports: each verb loads what it needs.
 
@@ -78,8 +77,8 @@ def _patience_option(command: Command) -> Command:
 @click.option("--param-type", "with_types", is_flag=True, help="The types as well.")
 @click.option("--filter", "pattern", metavar="REGEX", help="Only parameters whose names match.")
 @_patience_option
-@takes(ListOptions)
-def list_(chosen: ListOptions) -> int:
+@takes(ParamListOptions)
+def list_(chosen: ParamListOptions) -> int:
     """Print the parameters of a node, or of all nodes."""
     from ifgen_tools.param.show import list_parameters
 

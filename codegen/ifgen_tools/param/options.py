@@ -4,32 +4,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ifgen_tools.verbs import GraphOptions
+from ifgen_tools.verbs import GraphOptions, NodeOptions
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _AnyNode(GraphOptions):
-    """The options of all verbs. A node may take `patience` [s] to answer; None is for ever."""
+class ParamListOptions(GraphOptions):
+    """The options of `param list`, about one node or about all."""
 
     include_hidden: bool = False
     patience: float | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ListOptions(_AnyNode):
-    """The options of `param list`."""
-
     node: str | None
     param_prefixes: tuple[str, ...]
     with_types: bool
     pattern: str | None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NodeOptions(_AnyNode):
-    """The options of a verb that is about one node, such as `param dump`."""
-
-    node: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -25,8 +25,9 @@ from ifgen_tools.param.client import (
     remote_parameters,
     value_of,
 )
-from ifgen_tools.param.options import DescribeOptions, GetOptions, ListOptions, NodeOptions
+from ifgen_tools.param.options import DescribeOptions, GetOptions, ParamListOptions
 from ifgen_tools.session import Session, open_session
+from ifgen_tools.verbs import NodeOptions
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import ParameterDescriptor, ParameterValue
@@ -41,7 +42,7 @@ def opened(chosen: NodeOptions) -> Generator[RemoteParameters]:
             yield remote
 
 
-def list_parameters(chosen: ListOptions) -> int:
+def list_parameters(chosen: ParamListOptions) -> int:
     """Print the names of the parameters of a node, or of all nodes that have services for them."""
     matches = _compiled(chosen.pattern)
     code, found = 0, dict[str, Any]()
@@ -68,7 +69,7 @@ def list_parameters(chosen: ListOptions) -> int:
 
 
 def _listed(
-    session: Session, node: str, chosen: ListOptions, matches: re.Pattern[str]
+    session: Session, node: str, chosen: ParamListOptions, matches: re.Pattern[str]
 ) -> dict[str, str] | list[str]:
     """The parameters of a node to list, with the names of their types if these are wanted."""
     with remote_parameters(session, node, chosen.patience) as remote:

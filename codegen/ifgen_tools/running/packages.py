@@ -10,7 +10,6 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from functools import cache
 from importlib import metadata
 from pathlib import Path
@@ -18,6 +17,7 @@ from typing import Final
 
 from ifgen import resources
 from ifgen.activation import is_node_package
+from ifgen.command_kit.tool import did_you_mean
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.reading import package_xml
 
@@ -67,9 +67,8 @@ def executable_of(package: Package, name: str) -> Executable:
     """Return an executable of a package. Raises UsageError, which names those that are there."""
     if name not in package.executables:
         names = sorted(package.executables)
-        close = get_close_matches(name, names)
-        meant = f"did you mean '{close[0]}'? " if close else ""
-        help = f"{meant}it has {', '.join(names) or 'none'}"
+        meant = did_you_mean(name, names, limit=1, cutoff=0.6)
+        help = f"{meant} it has {', '.join(names) or 'none'}".lstrip()
         message = f"the package '{package.name}' in {package.share} has no executable '{name}'"
         raise UsageError([Diagnostic("no-program", message, help=help)])
     return package.executables[name]
@@ -77,10 +76,11 @@ def executable_of(package: Package, name: str) -> Executable:
 
 def missing(package_name: str, output: Path) -> Diagnostic:
     """Say that there is no such package, and where ifgen looked."""
-    close = get_close_matches(package_name, names(output), n=1)
-    meant = f"did you mean '{close[0]}'? " if close else ""
+    meant = did_you_mean(package_name, names(output), limit=1, cutoff=0.6)
     looked = f"ifgen looked in {output}, for sources in {Path.cwd()}, and among the installed packages"
-    return Diagnostic("no-package", f"there is no package '{package_name}'", help=f"{meant}{looked}")
+    return Diagnostic(
+        "no-package", f"there is no package '{package_name}'", help=f"{meant} {looked}".lstrip()
+    )
 
 
 def names(output: Path) -> list[str]:

@@ -7,12 +7,12 @@ import os
 import re
 import sys
 from collections.abc import Generator, Sequence
-from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 from typing import Literal
 
 from ifgen.activation import ActivationError, folder_around, is_node_package, put_on_path
+from ifgen.command_kit.tool import did_you_mean
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.reading.listed_file import EXTENSIONS
@@ -67,7 +67,9 @@ def _without_package(program: list[str], generated: Path) -> list[str]:
             raise UsageError([Diagnostic("no-program", message, help=advice)])
         return program
     if first.startswith("-"):
-        hint = _meant_option(first) + "`ifgen run --help` lists them"
+        ours = ("--transport", "--lockstep", "--generate", "--help")
+        meant = did_you_mean(first.partition("=")[0], ours, limit=1, cutoff=0.6)
+        hint = f"{meant} `ifgen run --help` lists them".lstrip()
         raise UsageError([Diagnostic("no-program", f"there is no option '{first}'", help=hint)])
     from ifgen_tools.running import packages  # late: a program that is a file or a module is found without
 
@@ -94,13 +96,6 @@ def _without_package(program: list[str], generated: Path) -> list[str]:
         advice = f"start it by its path: {found.words[0]}"
         raise UsageError([Diagnostic("no-program", f"'{others[0]}' is no program in Python", help=advice)])
     return [*found.words, *others[1:]]
-
-
-def _meant_option(word: str) -> str:
-    close = get_close_matches(
-        word.partition("=")[0], ("--transport", "--lockstep", "--generate", "--help"), n=1
-    )
-    return f"did you mean '{close[0]}'? " if close else ""
 
 
 def run(

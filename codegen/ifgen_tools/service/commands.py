@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import click
 from ifgen.command_kit import options
+from ifgen.command_kit.completion import service_types
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
@@ -50,9 +51,9 @@ def service(context: click.Context, include_hidden: bool) -> None:
 @takes(ListOptions)
 def list_(chosen: ListOptions) -> None:
     """Print the names of all services."""
-    from ifgen_tools.service.list import list_services
+    from ifgen_tools.graph.services import print_list
 
-    list_services(chosen)
+    print_list("service", chosen)
 
 
 @service.command("type", epilog="Example: ifgen service type /talker/get_parameters")
@@ -63,13 +64,13 @@ def list_(chosen: ListOptions) -> None:
 @takes(NameOptions)
 def type_(chosen: NameOptions) -> None:
     """Print the type of a service."""
-    from ifgen_tools.service.list import print_type
+    from ifgen_tools.graph.services import print_type
 
-    print_type(chosen)
+    print_type("service", chosen)
 
 
 @service.command(epilog="Example: ifgen service find rcl_interfaces/srv/GetParameters")
-@click.argument("type_name", metavar="TYPE", shell_complete=completion.service_types)
+@click.argument("type_name", metavar="TYPE", shell_complete=service_types)
 @options.graph_options
 @options.use_sim_time_option
 @_hidden
@@ -78,9 +79,9 @@ def type_(chosen: NameOptions) -> None:
 @takes(FindOptions)
 def find(chosen: FindOptions) -> None:
     """Print the services of a type."""
-    from ifgen_tools.service.list import find_services
+    from ifgen_tools.graph.services import print_those_of_type
 
-    find_services(chosen)
+    print_those_of_type("service", chosen)
 
 
 @service.command(epilog="Example: ifgen service info /talker/get_parameters")
@@ -92,14 +93,14 @@ def find(chosen: FindOptions) -> None:
 @takes(NameOptions)
 def info(chosen: NameOptions) -> None:
     """Print the type of a service, and how many nodes call and serve it."""
-    from ifgen_tools.service.list import service_info
+    from ifgen_tools.graph.services import service_info
 
     service_info(chosen)
 
 
 @service.command(epilog='Example: ifgen service call /add example_interfaces/srv/AddTwoInts "{a: 1, b: 2}"')
 @click.argument("name", metavar="SERVICE", shell_complete=completion.services)
-@click.argument("type_name", metavar="TYPE", shell_complete=completion.service_types)
+@click.argument("type_name", metavar="TYPE", shell_complete=service_types)
 @click.argument("values", metavar="[VALUES]", required=False)
 @click.option("--stdin", "from_stdin", is_flag=True, help="Read the values from stdin.")
 @click.option(
@@ -121,7 +122,7 @@ def call(chosen: CallOptions) -> None:
 
 @service.command(epilog="Example: ifgen service echo /add --flow-style")
 @click.argument("name", metavar="SERVICE", shell_complete=completion.services)
-@click.argument("type_name", metavar="[TYPE]", required=False, shell_complete=completion.service_types)
+@click.argument("type_name", metavar="[TYPE]", required=False, shell_complete=service_types)
 @click.option("--csv", is_flag=True, help="All values with commas between them.")
 @style_options
 @options.transport_option

@@ -9,7 +9,7 @@ import click
 
 from ifgen_tools.calling import class_on_the_wire, full_type_name, known_class
 from ifgen_tools.graph.reading import services
-from ifgen_tools.service.list import pick_service
+from ifgen_tools.graph.services import pick
 from ifgen_tools.session import open_session
 from ifgen_tools.texts.formats import as_csv, as_json, plain, written
 
@@ -52,7 +52,7 @@ def _service(session: Session, name: str, type_name: str | None) -> tuple[str, t
     """The full name of a service, and its class. Raises ToolError."""
     session.discover()
     if type_name is None:
-        found = pick_service(session.node, name)
+        found = pick("service", session.node, name)
         service, type_name = found.name, found.types[0]
     else:
         service, type_name = session.node.resolve_service_name(name), full_type_name(type_name, "service")

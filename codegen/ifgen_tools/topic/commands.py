@@ -7,6 +7,7 @@ from typing import Final
 
 import click
 from ifgen.command_kit import options
+from ifgen.command_kit.completion import message_types
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion, qos
@@ -80,7 +81,7 @@ def type_(chosen: NameOptions) -> int:
 
 
 @topic.command(epilog="Example: ifgen topic find std_msgs/msg/String")
-@click.argument("type_name", metavar="TYPE", shell_complete=completion.message_types)
+@click.argument("type_name", metavar="TYPE", shell_complete=message_types)
 @click.option("-c", "--count-topics", "count", is_flag=True, help="Only how many there are.")
 @options.hidden_topics_option
 @options.json_option
@@ -96,7 +97,7 @@ def find(chosen: FindOptions) -> int:
 
 @topic.command(epilog="Example: ifgen topic echo /imu --field linear_acceleration --once")
 @_TOPIC
-@click.argument("message_type", metavar="[TYPE]", required=False, shell_complete=completion.message_types)
+@click.argument("message_type", metavar="[TYPE]", required=False, shell_complete=message_types)
 @click.option("--once", is_flag=True, help="Print one message, and exit.")
 @click.option("--timeout", type=_POSITIVE, metavar="SECONDS", help="Exit after this time.")
 @click.option(
@@ -138,7 +139,7 @@ def echo(chosen: EchoOptions) -> int:
 
 @topic.command(epilog="Example: ifgen topic pub --once /cmd_vel geometry_msgs/msg/Twist '{linear: {x: 0.5}}'")
 @_TOPIC
-@click.argument("message_type", metavar="TYPE", shell_complete=completion.message_types)
+@click.argument("message_type", metavar="TYPE", shell_complete=message_types)
 @click.argument("values", metavar="[VALUES]", required=False)
 @click.option("--stdin", is_flag=True, help="Read VALUES from standard input.")
 @click.option("-r", "--rate", type=_POSITIVE, default=1.0, metavar="HZ", help="The rate, 1 Hz by default.")

@@ -200,9 +200,9 @@ def _with_label(interface: Interface | None, selection: Selection) -> list[str]:
 
 def _lines(interface: Interface | None, selection: Selection) -> list[str]:
     """The definition without comments, its nested types below their fields; empty if there is none."""
-    from ifgen.cli import show
+    from ifgen.cli import interface_text
 
-    return [] if interface is None else list(show.definition(interface, selection.registry))
+    return [] if interface is None else list(interface_text.definition(interface, selection.registry))
 
 
 def _changes(
