@@ -49,8 +49,6 @@ def test_no_room_is_crowded() -> None:
 
 SMALL = {
     "ifgen.command_kit.failures": "only a run that fails loads it",
-    "ifgen.dynamic.classes": "from a description to a class; making and asking do not know each other",
-    "ifgen.dynamic.derived": "what only bags have: texts of services instead of their messages",
     "ifgen.pipeline.typings": "`ifgen typings` as `stages` is `ifgen generate`",
     "ifgen.reading.python_text": "places in Python, beside those in the other kinds of files that are read",
     "ifgen_runtime.importing": "messages load it, and must stay light",

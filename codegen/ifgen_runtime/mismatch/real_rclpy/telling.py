@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -12,14 +12,20 @@ from rclpy.logging import get_logger
 from ifgen_runtime.mismatch import listeners
 from ifgen_runtime.mismatch.explanation import explanation, in_one_line
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.mismatch.real_rclpy.asking import Asker, Question
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
 from ifgen_runtime.mismatch.real_rclpy.graph import Peer
 from ifgen_runtime.mismatch.remembered import Once
 from ifgen_runtime.mismatch.sides import Definition, Mismatch, Side, definition_of
 from ifgen_runtime.mismatch.told import Say, Told
+from ifgen_runtime.mismatch.type_description_client import Definitions, Question, node_connection
 
 _NAMELESS: Final = "a node without a name"
+
+_ASKING: Final = "_ifgen_type_mismatch"
+"""The name of the hidden node that asks others, and exists only while questions are open."""
+
+_POLL: Final = 0.02
+"""Seconds between two looks at whether a node can be asked."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +49,17 @@ class Meeting:
         nodes = frozenset({(endpoint.node_name, endpoint.role), (peer.node, endpoint.others)})
         return endpoint.name, nodes, frozenset({self.part.type_hash, peer.type_hash})
 
+    @property
+    def question(self) -> Question:
+        """The question for the definition of the other."""
+        return Question(self.peer.node, self.part.type_name, self.peer.type_hash)
+
 
 class Teller:
     """Collects meetings, asks for the definitions of the others, and warns."""
 
     def __init__(self, context: Any, stop: threading.Event) -> None:
-        self._asker = Asker(context, stop)
+        self._definitions = Definitions(lambda: node_connection(context, _ASKING, _POLL), stop.is_set)
         self._seen = Once()
         self._told = Told()
         self._untold: list[Meeting] = []
@@ -65,7 +76,12 @@ class Teller:
         if not meetings:
             return
         here = {part.type_hash: part.cls for endpoint in endpoints for part in endpoint.parts}
-        self._asker.ask(_questions(meeting for meeting in meetings if meeting.peer.type_hash not in here))
+        # Nodes answer for the hash of a service, and the graph has the hashes of its parts.
+        self._definitions.ask(
+            meeting.question
+            for meeting in meetings
+            if meeting.part.is_message and meeting.peer.type_hash not in here
+        )
         for meeting in meetings:
             try:
                 if not meeting.peer.type_hash:
@@ -73,7 +89,7 @@ class Teller:
                 elif meeting.peer.type_hash in here:
                     self._tell(meeting, definition_of(here[meeting.peer.type_hash]))
                 else:
-                    self._tell(meeting, self._asker.answer(meeting.peer.type_hash))
+                    self._tell(meeting, self._definitions.get(meeting.question))
             except Exception as error:  # such as a node that has been destroyed meanwhile
                 self.complain(error)
 
@@ -113,13 +129,6 @@ class Teller:
             logger.debug(text)
         except Exception:  # rclpy is shutting down
             return
-
-
-def _questions(meetings: Iterable[Meeting]) -> Iterator[Question]:
-    """The questions that make sense: nodes answer for the hash of a service, and the graph has its parts'."""
-    for meeting in meetings:
-        if meeting.part.is_message:
-            yield Question(meeting.peer.node, meeting.part.type_name, meeting.peer.type_hash)
 
 
 def _mismatch(meeting: Meeting, theirs: Definition | None) -> Mismatch:

@@ -45,10 +45,10 @@ _LATE: Final = (
     "rmw_local.mismatch.passage",
     "rmw_local.mismatch.telling",
     "rmw_local.statistics",
-    "rmw_local.transports.asking",
     "rmw_local.transports.environment",
     "rmw_local.transports.link",
     "rmw_local.transports.receipts",
+    "rmw_local.transports.type_descriptions",
     "rmw_local.transports.zenoh.config",
     "rmw_local.transports.zenoh.engine",
 )
