@@ -52,7 +52,6 @@ SMALL = {
     "ifgen.pipeline.typings": "`ifgen typings` as `stages` is `ifgen generate`",
     "ifgen.reading.python_text": "places in Python, beside those in the other kinds of files that are read",
     "ifgen_runtime.importing": "messages load it, and must stay light",
-    "ifgen_runtime.mismatch.real_rclpy.guarding": "loaded where a policy refuses or adapts",
     "ifgen_runtime.slot_types": "loaded by who asks for SLOT_TYPES",
     "ifgen_runtime.undecided": "the names that adapters of users import",
     "ifgen_tools.launching.reading.python_file": "one kind of launch file",

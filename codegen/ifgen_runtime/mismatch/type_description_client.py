@@ -14,7 +14,7 @@ from importlib import import_module
 from itertools import islice
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeAlias
 
-from ifgen_runtime.mismatch.remembered import Once, Remembered
+from ifgen_runtime.mismatch.limits import Lru, SeenSet
 from ifgen_runtime.mismatch.sides import Definition, definition_from
 from ifgen_runtime.type_description import hash_of
 
@@ -152,14 +152,14 @@ class Definitions:
         """While it waits for answers, it looks whether everything `is_over`."""
         self._connect = connect
         self._is_over = is_over
-        self._asked = Once()
-        self._by_hash: Remembered[Definition] = Remembered(_MOST_DEFINITIONS)  # those that fit their hashes
-        self._lies: Remembered[Definition] = Remembered(_MOST_DEFINITIONS)  # by question
+        self._asked = SeenSet()
+        self._by_hash: Lru[Definition] = Lru(_MOST_DEFINITIONS)  # those that fit their hashes
+        self._lies: Lru[Definition] = Lru(_MOST_DEFINITIONS)  # by question
 
     def ask(self, questions: Iterable[Question]) -> None:
         """Ask what has not been asked yet, and wait for the answers, but not long."""
         unknown = worth_asking(each for each in questions if self._by_hash.get(each.type_hash) is None)
-        asked = list(islice((each for each in unknown if self._asked.is_new(each)), _AT_ONCE))
+        asked = list(islice((each for each in unknown if self._asked.add(each)), _AT_ONCE))
         if not asked or self._is_over():
             return
         with self._connect() as connection:
