@@ -95,7 +95,9 @@ def class_on_the_wire(
     """
     if isinstance(known, type) and _fits(session, kind, name, known):
         return known
-    from ifgen.dynamic import DescribeError, InputError, class_of, describe_action, describe_service
+    from ifgen.dynamic import DescribeError, InputError, class_of
+
+    from ifgen_tools.type_descriptions import describe_action, describe_service
 
     describe = describe_service if kind == "service" else describe_action
     try:
@@ -111,7 +113,7 @@ def class_on_the_wire(
 
 def _fits(session: Session, kind: Kind, name: str, known: type[Any]) -> bool:
     """Whether a server has the definition of a class, as far as the graph tells."""
-    from ifgen.dynamic.calls import servers_of
+    from ifgen_tools.type_descriptions import servers_of
 
     part = known if kind == "service" else getattr(known, "Impl").SendGoalService  # noqa: B009 - of any class
     servers = servers_of(session.node, name if kind == "service" else f"{name}/{SEND_GOAL}")

@@ -88,7 +88,9 @@ def class_with_hash(node: Node, topic: str, wanted: WireType, timeout: float = 5
     else:
         if wanted.hash is None or getattr(cls, "__type_hash__", wanted.hash) == wanted.hash:
             return cls
-    from ifgen.dynamic import DescribeError, InputError, class_of, describe
+    from ifgen.dynamic import DescribeError, InputError, class_of
+
+    from ifgen_tools.type_descriptions import describe
 
     try:
         return class_of(describe(node, topic, timeout=timeout, type_hash=wanted.hash))

@@ -49,12 +49,9 @@ def test_no_room_is_crowded() -> None:
 
 SMALL = {
     "ifgen.command_kit.failures": "only a run that fails loads it",
-    "ifgen.dynamic.classes": "from a description to a class; making and asking do not know each other",
-    "ifgen.dynamic.derived": "what only bags have: texts of services instead of their messages",
     "ifgen.pipeline.typings": "`ifgen typings` as `stages` is `ifgen generate`",
     "ifgen.reading.python_text": "places in Python, beside those in the other kinds of files that are read",
     "ifgen_runtime.importing": "messages load it, and must stay light",
-    "ifgen_runtime.mismatch.real_rclpy.guarding": "loaded where a policy refuses or adapts",
     "ifgen_runtime.slot_types": "loaded by who asks for SLOT_TYPES",
     "ifgen_runtime.undecided": "the names that adapters of users import",
     "ifgen_tools.launching.reading.python_file": "one kind of launch file",

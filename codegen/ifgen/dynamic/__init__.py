@@ -13,12 +13,15 @@ type hash, for the local transport and for real rclpy. Several versions of a typ
 beside the generated class too. Errors are InputError, with one sentence for each mistake.
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from ifgen.diagnostics import InputError
-from ifgen.dynamic.asking import DescribeError, TypeDescription
-from ifgen.dynamic.calls import describe_action, describe_service
-from ifgen.dynamic.classes import class_of
-from ifgen.dynamic.describing import describe
+from ifgen.dynamic.descriptions import DescribeError, TypeDescription, class_of
 from ifgen.dynamic.texts import class_from_text
+
+if TYPE_CHECKING:
+    from ifgen_tools.type_descriptions import describe, describe_action, describe_service
 
 __all__ = [
     "DescribeError",
@@ -30,3 +33,12 @@ __all__ = [
     "describe_action",
     "describe_service",
 ]
+
+_OF_TOOLS = {"describe", "describe_action", "describe_service"}
+"""The functions that ask running nodes: they need an rclpy, and ifgen has none."""
+
+
+def __getattr__(name: str) -> object:
+    if name not in _OF_TOOLS:
+        raise AttributeError(f"module 'ifgen.dynamic' has no attribute {name!r}")
+    return getattr(import_module("ifgen_tools.type_descriptions"), name)

@@ -4,15 +4,26 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 from ifgen.definition.described.texts import read_sources, read_texts
-from ifgen.dynamic.derived import whole_of
 from ifgen.dynamic.making import make
 
 _SEPARATOR: Final = re.compile(r"^={80}\r?\n(MSG|IDL|SRV|ACTION): (\S+)[ \t]*\r?\n", re.MULTILINE)
 """The lines between definitions that belong together, in bags and in the schemas of MCAP."""
+
+Source: TypeAlias = tuple[str, str, str]
+"""The name of a type, the encoding of its text, and the text."""
+
+_NAME: Final = re.compile(r"(?P<of>\w+/(?P<folder>srv|action)/[A-Za-z0-9]+)_(?P<part>\w+)")
+_PARTS: Final = {"srv": ("Request", "Response"), "action": ("Goal", "Result", "Feedback")}
+_IN_IMPL: Final = {
+    "SendGoal": "SendGoalService",
+    "GetResult": "GetResultService",
+    "FeedbackMessage": "FeedbackMessage",
+}
 
 
 def class_from_text(
@@ -36,7 +47,7 @@ def class_from_text(
     """
     sources = sources_in(type_name, text, idl=idl)
     sources += ((name, "", body) for name, body in (others or {}).items())
-    if (whole := whole_of(type_name, sources)) is not None:
+    if (whole := _whole_of(type_name, sources)) is not None:
         return whole.part_of(make(*read_texts(whole.type_name, whole.sources, include)))
     return make(*read_texts(type_name, sources, include))
 
@@ -66,3 +77,39 @@ def _full(name: str) -> str:
     """`pkg/msg/Name` for `pkg/Name`, as bags write it."""
     package, slash, rest = name.partition("/")
     return f"{package}/msg/{rest}" if slash and "/" not in rest else name
+
+
+@dataclass(frozen=True, slots=True)
+class _Whole:
+    """The service or the action that a message belongs to, and what `sources` define it."""
+
+    type_name: str
+    part: str
+    sources: tuple[Source, ...]
+
+    def part_of(self, cls: Any) -> type[Any]:
+        """The class of the message, of the class of the whole. Raises AttributeError if there is none."""
+        found = cls
+        for word in self.part.split("_"):
+            found = getattr(found.Impl, _IN_IMPL[word]) if word in _IN_IMPL else getattr(found, word)
+        part: type[Any] = found
+        return part
+
+
+def _whole_of(type_name: str, sources: Sequence[Source]) -> _Whole | None:
+    """The service or action that a message belongs to, None if it belongs to none.
+
+    Bags have either the text of the whole service, as rosbag2 writes it, or one for each of its messages. The
+    parts that no text defines are empty: they do not matter for the message.
+    """
+    match = _NAME.fullmatch(type_name)
+    if match is None:
+        return None
+    of, texts = match["of"], {name: text for name, _, text in sources}
+    own = (of, "", texts[of] if of in texts else _joined(of, _PARTS[match["folder"]], texts))
+    others = tuple(each for each in sources if each[0] != of and not each[0].startswith(f"{of}_"))
+    return _Whole(of, match["part"], (own, *others))
+
+
+def _joined(of: str, parts: Sequence[str], texts: Mapping[str, str]) -> str:
+    return "\n---\n".join(texts.get(f"{of}_{part}", "") for part in parts) + "\n"

@@ -15,7 +15,7 @@ def import_type_support(interface: type[Any]) -> None:
 
     Raises TypeSupportError, which says what is missing and what to do.
     """
-    from ifgen_runtime.mismatch.real_rclpy import noting  # with rclpy only, and it is running
+    from ifgen_runtime.mismatch.real_rclpy import instrumentation  # with rclpy only, and it is running
     from ifgen_runtime.type_support.register import give_type_support  # ctypes, and the libraries of ROS
 
     try:
@@ -24,4 +24,4 @@ def import_type_support(interface: type[Any]) -> None:
         raise
     except RuntimeError as error:  # the extension has no room for another type
         raise TypeSupportError(f"no type support for {interface.__name__}: {error}") from error
-    noting.begin()
+    instrumentation.begin()

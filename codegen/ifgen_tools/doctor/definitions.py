@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from ifgen.dynamic.asking import Endpoint as Source
-from ifgen.dynamic.describing import answers
 from ifgen.nodl.model import Category
+from ifgen_runtime.mismatch.type_description_client import Question, worth_asking
 
 from ifgen_tools.graph.connections import Kind
 from ifgen_tools.graph.reading import Gid, ServicePart, View, is_hidden
+from ifgen_tools.type_descriptions import answers
 
 if TYPE_CHECKING:
     from ifgen.dynamic import TypeDescription
@@ -26,9 +26,6 @@ _PARTS: Final = re.compile(
 
 _PATIENCE: Final = 2.0
 """Seconds for all answers: a node that is silent costs no more than that."""
-
-_ASKED: Final = 3
-"""Nodes that are asked for the same definition: the first ones may be too busy to answer."""
 
 _MOST: Final = 100
 """Questions in all."""
@@ -123,22 +120,19 @@ def without_hash(found: Iterable[User]) -> list[str]:
 
 def descriptions(node: Node, found: Iterable[Disagreement]) -> dict[str, TypeDescription]:
     """The definitions that nodes send, by type hash. Nobody has checked them."""
-    sources = list(dict.fromkeys(_sources(found)))[:_MOST]
-    if not sources:
+    questions = worth_asking(_questions(found))[:_MOST]
+    if not questions:
         return {}
-    return {source.type_hash: answer for source, answer in answers(node, sources, _PATIENCE).items()}
+    return {asked.type_hash: answer for asked, answer in answers(node, questions, _PATIENCE).items()}
 
 
-def _sources(found: Iterable[Disagreement]) -> Iterator[Source]:
-    """The nodes to ask for definitions."""
+def _questions(found: Iterable[Disagreement]) -> Iterator[Question]:
     for disagreement in found:
         if len(disagreement.type_names) > 1:
             continue  # the names say it all
         for version, having in disagreement.versions.items():
-            asked = dict.fromkeys(user.node for user in having)
-            for name in list(asked)[:_ASKED]:
-                if version.type_hash:
-                    yield Source(name, version.type_name, version.type_hash)
+            for user in having:
+                yield Question(user.node, version.type_name, version.type_hash or "")
 
 
 def _on_topics(view: View) -> Iterator[User]:

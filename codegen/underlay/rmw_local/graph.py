@@ -18,7 +18,7 @@ from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceQos, Servic
 from rmw_local.writer import DurableWriter, Writer
 
 if TYPE_CHECKING:
-    from ifgen_runtime.mismatch.told import Told
+    from ifgen_runtime.mismatch.limits import WarningLimit
 
     from rmw_local.lockstep.side import Side
     from rmw_local.message import MessageType, ServiceType
@@ -85,11 +85,11 @@ class Participant:
         self._types: dict[str, tuple[str, int]] = {}
 
     @cached_property
-    def told(self) -> Told:
+    def warning_limit(self) -> WarningLimit:
         """The number of warnings about definitions that differ."""
-        from ifgen_runtime.mismatch.told import Told  # late: definitions hardly ever differ
+        from ifgen_runtime.mismatch.limits import WarningLimit  # late: definitions hardly ever differ
 
-        return Told()
+        return WarningLimit()
 
     def next_gid(self) -> bytes:
         """Return a new 16-byte gid."""

@@ -8,6 +8,7 @@ import ifgen.dynamic
 from common import rclpy, spin_until
 from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.mismatch import listeners
+from ifgen_runtime.mismatch.real_rclpy.guarded_subscriptions import TELLS_PUBLISHER
 from ifgen_runtime.mismatch.real_rclpy.watch import watch_of
 from ifgen_runtime.type_support import tables
 from rcl_interfaces.msg import Log
@@ -104,6 +105,27 @@ for a in (0.0, 0.5):
     five.publish(Theirs(a=a))
 spin_until(adapted, lambda: received)
 print("adapted", [message.a for message in received])
+received.clear()
+
+said = []
+careful.create_subscription(
+    Log, "/rosout", lambda log: said.append(log.msg) if "several definitions" in log.msg else None, 10
+)
+six = peer.create_publisher(Ours, "/five", 10)
+spin_until(peer, six.get_subscription_count)
+if not TELLS_PUBLISHER:
+    spin_until(careful, lambda: said)
+for publisher, message in ((five, Theirs(a=0.5)), (six, Ours(a=0.5))) * 3:
+    publisher.publish(message)
+    spin_until(adapted, lambda: len(received) == 6, limit=0.05)
+mixed = {message.a for message in received}
+received.clear()
+peer.destroy_publisher(five)
+spin_until(adapted, lambda: adapted.count_publishers("/five") == 1)
+while not received:
+    six.publish(Ours(a=4.0))
+    spin_until(adapted, lambda: received, limit=0.05)
+print("several definitions", len(said), sorted(mixed), received[0].a)
 received.clear()
 
 heard.clear()

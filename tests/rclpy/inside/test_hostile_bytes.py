@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import nullcontext
 from dataclasses import replace
 from typing import Any
 
@@ -18,9 +19,10 @@ from ifgen_runtime.codec import serialize
 from ifgen_runtime.convert import from_dict
 from ifgen_runtime.mismatch.explanation import explanation
 from ifgen_runtime.mismatch.sides import Mismatch, Side
+from ifgen_runtime.mismatch.type_description_client import Definitions, Question
 from ifgen_runtime.type_description import describe
 from rmw_local.qos import KEEP_LAST, QosProfile
-from rmw_local.transports.asking import Asker, Question
+from rmw_local.transports import type_descriptions
 from rmw_local.transports.interface import Entity, Kind
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool
@@ -168,9 +170,9 @@ documents = st.fixed_dictionaries(
 
 
 @pytest.fixture(scope="module")
-def asker(honest: Process) -> Asker:
+def connection(honest: Process) -> type_descriptions._Connection:
     assert honest.link is not None
-    return Asker(honest.domain, honest.link._transport, lambda: False)
+    return type_descriptions._Connection(honest.domain, honest.link._transport)
 
 
 @given(
@@ -185,12 +187,12 @@ def asker(honest: Process) -> Asker:
 )
 @CASES
 def test_whatever_a_node_says_of_its_definitions_is_explained_or_left_out(
-    asker: Asker, answer: bytes
+    connection: type_descriptions._Connection, answer: bytes
 ) -> None:
     question = Question("/evil", POINT, f"RIHS01_{'1' * 64}")
-    asker._lies.pop(question)
-    asker._keep(question, answer)
-    said = asker._lies.get(question)
+    definitions = Definitions(lambda: nullcontext(connection), lambda: False)
+    definitions.keep(question, connection._response(answer))
+    said = definitions.get(question)
     mine, theirs = (
         Side("/honest", "subscription", Mine.__type_hash__),
         Side("/evil", "publisher", question.type_hash, said),

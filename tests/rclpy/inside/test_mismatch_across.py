@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 from ifgen.dynamic import class_from_text
 from ifgen_runtime import from_dict
-from ifgen_runtime.mismatch import listeners
+from ifgen_runtime.mismatch import listeners, type_description_client
 from ifgen_runtime.mismatch.explanation import explanation
 from ifgen_runtime.mismatch.sides import Mismatch, definition_of
+from ifgen_runtime.mismatch.type_description_client import Patience
 from ifgen_runtime.type_description import describe
 from rclpy.action import ActionClient, ActionServer
 from rclpy.node import Node
@@ -149,7 +150,15 @@ def test_nodes_answer_for_parts_of_services_and_actions(recorded: Pair) -> None:
     server.destroy()
 
 
-def test_a_silent_peer_costs_only_the_detail_and_is_asked_once(recorded: Pair, heard: list[Mismatch]) -> None:
+@pytest.fixture
+def impatient(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wait for silent nodes half a second, not three."""
+    monkeypatch.setattr(type_description_client, "OF_WARNINGS", Patience(to_appear=0.5, to_answer=0.5))
+
+
+def test_a_silent_peer_costs_only_the_detail_and_is_asked_once(
+    recorded: Pair, heard: list[Mismatch], impatient: None
+) -> None:
     one, other = recorded.process("one").node, recorded.process("two").node
     other.create_subscription(NewPoint, "point", ignore, 10)
     before = time.monotonic()
@@ -204,7 +213,9 @@ def test_fifty_nodes_are_asked_a_few_times(recorded: Pair, heard: list[Mismatch]
         node.destroy_node()
 
 
-def test_nothing_is_said_when_the_context_has_ended(recorded: Pair, heard: list[Mismatch]) -> None:
+def test_nothing_is_said_when_the_context_has_ended(
+    recorded: Pair, heard: list[Mismatch], impatient: None
+) -> None:
     one, other = recorded.process("one").node, recorded.process("two").node
     other.create_subscription(NewPoint, "point", ignore, 10)
     one.create_publisher(OldPoint, "point", 10)

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ifgen.dynamic.asking import Endpoint
 from ifgen_pytest.domains import own_domain
+from ifgen_runtime.mismatch.type_description_client import Question
 from ifgen_tools.doctor import definitions
 from ifgen_tools.doctor.definitions import Disagreement, User, Version, descriptions
 
@@ -162,7 +162,7 @@ def test_a_silent_node_costs_only_the_detail(project: Path, domain: dict[str, st
 def test_the_same_definition_is_asked_of_three_nodes_at_most_and_of_none_twice(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    asked: list[Endpoint] = []
+    asked: list[Question] = []
     monkeypatch.setattr(definitions, "answers", lambda _, questions, __: asked.extend(questions) or {})
     having = {
         Version("a/msg/B", type_hash): [
@@ -173,7 +173,7 @@ def test_the_same_definition_is_asked_of_three_nodes_at_most_and_of_none_twice(
     }
     found = Disagreement("topic", "/x", having)
     descriptions(None, [found, replace(found, name="/y")])
-    assert [each.node for each in asked] == ["/old0", "/old1", "/old2", "/new0", "/new1", "/new2"]
+    assert [each.node for each in asked] == ["/old0", "/new0", "/old1", "/new1", "/old2", "/new2"]
 
 
 def test_wrong_usage(project: Path, domain: dict[str, str]) -> None:

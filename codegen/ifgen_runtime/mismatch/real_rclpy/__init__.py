@@ -1,5 +1,5 @@
-"""Definitions that differ on real rclpy: noting our endpoints, looking at the graph, telling, guarding.
+"""Definitions that differ on real rclpy: instrumentation of endpoints, looks at the graph, reports, guards.
 
-Only imported where real rclpy runs: `noting.begin` starts everything, when a class first gets its type
+Only imported where real rclpy runs: `instrumentation.begin` starts everything, when a class first gets its type
 support.
 """

@@ -1,12 +1,17 @@
-"""Requests and responses as bytes: classes that rclpy takes and sends as any other, for types of one name.
+"""Bytes of other definitions to our messages, and back.
 
-Which definition a request has is known when it has been taken. So it is taken as it came, and decoded then.
+Which definition a request or a response has is known when it has been taken. So it is taken as it came, as a
+`Carrier` of its bytes, and decoded then.
 """
 
 from __future__ import annotations
 
 from typing import Any, Final
 
+from ifgen_runtime.adapters import adapter_for, decode
+from ifgen_runtime.codec import serialize
+from ifgen_runtime.codec.decoding import decode_any
+from ifgen_runtime.errors import DeserializationError
 from ifgen_runtime.field_types import type_name
 from ifgen_runtime.type_description import describe
 from ifgen_runtime.type_support.binding import native
@@ -17,8 +22,38 @@ from ifgen_runtime.type_support.register import give, type_tables
 _ANY_LAYOUT: Final = (("R1 B0._first", b""),)  # a byte, which every body has: whatever follows is left over
 
 
+def decoded(data: bytes, type_hash: str, cls: type[Any]) -> Any:
+    """Our message in the bytes of the definition with this hash; None if they cannot be read.
+
+    Raises what an adapter raises.
+    """
+    try:
+        return decode(data, type_hash, cls)
+    except DeserializationError:
+        pass
+    if type_hash != cls.__type_hash__:
+        return None
+    try:
+        return decode_any(data, cls, bounded=False)  # compiled types receive what is over its bound, too
+    except DeserializationError:
+        return None
+
+
+def encoded(message: Any, type_hash: str, cls: type[Any]) -> Any:
+    """Make what rclpy is to send: our message, or a carrier of its bytes in another definition.
+
+    Raises what an adapter raises, and SerializationError for a wrong value.
+    """
+    if type_hash == cls.__type_hash__:
+        return message
+    adapter = adapter_for(type_hash, cls)
+    assert adapter is not None, "an adapter that was there is never unregistered"
+    assert adapter.downgrade is not None, "without it, the other definition is refused"
+    return carrier_of(cls)(serialize(adapter.downgrade(message)))
+
+
 class Carrier:
-    """The bytes of a message, encapsulation included."""
+    """The bytes of a message, encapsulation included: rclpy takes and sends it as any other message."""
 
     __slots__ = ("data",)
 

@@ -13,7 +13,7 @@ from ifgen_runtime.field_types import type_name
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
 
 if TYPE_CHECKING:
-    from ifgen_runtime.mismatch.real_rclpy.graph import Peer
+    from ifgen_runtime.mismatch.real_rclpy.peers import Peer
 
 _OTHERS: Final = {
     "publisher": "subscription",
@@ -64,6 +64,9 @@ class Part:
 
 class Guard(Protocol):
     """Decides about each message that an endpoint sends or receives."""
+
+    must_agree: bool
+    """Whether messages are let through only while all others have one definition."""
 
     def see(self, others: Iterable[tuple[Part, Peer]]) -> None:
         """Take note of all whom the endpoint meets now."""

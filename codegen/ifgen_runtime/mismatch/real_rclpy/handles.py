@@ -5,21 +5,21 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
 
     class _Handle:
         def __init__(self, node: Any, cls: type[Any], name: str, qos: Any) -> None:
             """Make it in rcl."""
-
-        @property
-        def pointer(self) -> int:
-            """Its address in C."""
-            ...
 
     class Subscription(_Handle):
         """An `rcl_subscription_t`."""
 
         def get_topic_name(self) -> str:
             """The full name."""
+            ...
+
+        def take_message(self, message_type: type[Any], raw: bool) -> tuple[Any, Mapping[str, Any]] | None:
+            """The next message, or its bytes for `raw`, and what is known of it; None if there is none."""
             ...
 
     class Service(_Handle):

@@ -20,11 +20,10 @@ from typing import Any, Final
 
 from rclpy.exceptions import InvalidHandle
 
-from ifgen_runtime.mismatch.real_rclpy.deciding import applied
+from ifgen_runtime.mismatch.policy import OnTypeMismatch
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
-from ifgen_runtime.mismatch.real_rclpy.graph import Peer, differs, peers
-from ifgen_runtime.mismatch.real_rclpy.telling import Meeting, Teller
-from ifgen_runtime.mismatch.real_rclpy.troubles import Troubles
+from ifgen_runtime.mismatch.real_rclpy.peers import Peer, applied, differs, peers
+from ifgen_runtime.mismatch.real_rclpy.reporting import Meeting, Reporter, UnreadableBytes
 
 _PERIOD: Final = 0.25
 """Seconds between two looks, at least."""
@@ -44,6 +43,10 @@ _NAMELESS: Final = 2
 _NAMED: Final = 3
 """How many nodes a warning about bytes names."""
 
+_NO_ACTIONS: Final = "Actions are not adapted on real rclpy"
+_NO_ADAPTER: Final = "No adapter fits"
+_MIXED: Final = "The {0.others}s have several definitions, and this rclpy does not tell whose a message is"
+
 _LEAVING: Final = 2.0
 """Seconds that the interpreter waits for the thread when it exits."""
 
@@ -56,8 +59,8 @@ class Watch:
         self._nodes: dict[int, _Node] = {}  # by the identity of rclpy's
         self._turn = 0
         self._stop = threading.Event()
-        self._teller = Teller(context, self._stop)
-        self._troubles = Troubles()
+        self._reporter = Reporter(context, self._stop)
+        self._unreadable = UnreadableBytes()
         self._thread = threading.Thread(target=self._run, name="ifgen type mismatch", daemon=True)
         self._thread.start()
         context.on_shutdown(self._stop.set)
@@ -68,6 +71,11 @@ class Watch:
         if known is None or known.node() is not node:
             known = self._nodes[id(node)] = _Node(endpoint.node_of)
         known.endpoints.append(endpoint)
+
+    def endpoints_of(self, node: Any) -> list[Endpoint]:
+        """The endpoints of a node that exist."""
+        known = self._nodes.get(id(node))
+        return [] if known is None else [endpoint for endpoint in known.endpoints if endpoint.is_alive()]
 
     def stop(self) -> None:
         """End the thread, and wait for that."""
@@ -81,9 +89,9 @@ class Watch:
             try:
                 self._look()
                 pause = max(_PERIOD, _SHARE * (time.thread_time() - began))
-                self._teller.tell(self._endpoints())
+                self._reporter.report(self._endpoints())
             except Exception as error:  # a thread has nobody to raise to, and the next look may succeed
-                self._teller.complain(error)
+                self._reporter.complain(error)
         _watches.pop(self._context, None)
 
     def _endpoints(self) -> list[Endpoint]:
@@ -101,7 +109,7 @@ class Watch:
         endpoints = self._endpoints()
         self._turn = self._turn % len(endpoints) if endpoints else 0
         self._turn += self._meet_some(endpoints[self._turn :] + endpoints[: self._turn], _TURN_BUDGET)
-        self._troubles.look(endpoints)
+        self._unreadable.look(endpoints)
 
     def _meet_some(self, endpoints: Iterable[Endpoint], budget: float) -> int:
         """Read whom endpoints meet, for `budget` [s]; returns how many it was."""
@@ -116,7 +124,7 @@ class Watch:
             except InvalidHandle:  # destroyed meanwhile
                 continue
             except Exception as error:  # whatever is wrong with one, the others are looked at
-                self._teller.complain(error)
+                self._reporter.complain(error)
         return met
 
     def _meet(self, endpoint: Endpoint) -> None:
@@ -131,18 +139,23 @@ class Watch:
             others = [(part, peer) for part in endpoint.parts for peer in peers(node, part)]
         if endpoint.guard is not None:
             endpoint.guard.see(others)
+        is_mixed = endpoint.guard is not None and endpoint.guard.must_agree and _are_mixed(others)
         others = [(part, peer) for part, peer in others if differs(peer, part) or not peer.type_hash]
         if endpoint.tries < _NAMELESS and not all(peer.node for _, peer in others):
             endpoint.tries += 1
             return
         if endpoint.seen < 0:
-            self._troubles.note(endpoint)
+            self._unreadable.note(endpoint)
         endpoint.tries, endpoint.seen = 0, count
         endpoint.differing = _names(others) or endpoint.differing
         for part, peer in _first_parts(others):
             hashes = [(of, found.type_hash) for of, found in others if found.node == peer.node]
-            policy = applied(endpoint.policy, endpoint.role, hashes)
-            self._teller.note(Meeting(endpoint, part, peer, policy))
+            policy, reason = applied(endpoint.policy, endpoint.role, hashes), ""
+            if endpoint.policy is OnTypeMismatch.ADAPT and policy is OnTypeMismatch.REFUSE:
+                reason = _NO_ACTIONS if endpoint.kind == "action" else _NO_ADAPTER
+            elif policy is OnTypeMismatch.ADAPT and is_mixed:
+                policy, reason = OnTypeMismatch.REFUSE, _MIXED.format(endpoint)
+            self._reporter.note(Meeting(endpoint, part, peer, policy, reason))
 
     def _forget(self, endpoint: Endpoint) -> None:
         for node in tuple(self._nodes.values()):
@@ -171,6 +184,16 @@ class _Node:
         except InvalidHandle:
             return False
         return True
+
+
+def _are_mixed(others: Iterable[tuple[Part, Peer]]) -> bool:
+    """Whether those on one of the parts have several definitions."""
+    hashes: dict[str, str] = {}
+    return any(
+        hashes.setdefault(part.topic, known) != known
+        for part, peer in others
+        for known in [peer.type_hash or part.type_hash]
+    )
 
 
 def _names(others: list[tuple[Part, Peer]]) -> tuple[str, ...]:

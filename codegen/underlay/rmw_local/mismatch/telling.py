@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ifgen_runtime.mismatch.explanation import explanation
+from ifgen_runtime.mismatch.limits import Say
 from ifgen_runtime.mismatch.listeners import tell
 from ifgen_runtime.mismatch.sides import Mismatch, Side, definition_of
-from ifgen_runtime.mismatch.told import Say
 
 from rmw_local import report
 from rmw_local.message import type_name
@@ -49,7 +49,7 @@ def part_of_action(encounter: Encounter) -> tuple[str, int]:
 def _tell(mismatch: Mismatch, encounter: Encounter) -> None:
     tell(mismatch)
     node = encounter.mine.node
-    say = node.participant.told.count(mismatch.name)
+    say = node.participant.warning_limit.count(mismatch.name)
     if say is Say.NOTHING:
         return
     if say is Say.NO_MORE:

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import _thread
 from collections import deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
 
 from rmw_local.notices import say
 
 if TYPE_CHECKING:
+    from ifgen_runtime.mismatch.sides import Definition
+    from ifgen_runtime.mismatch.type_description_client import Definitions
+
     from rmw_local.domain import Domain
     from rmw_local.graph import GraphNode
-    from rmw_local.mismatch.encounter import Encounter
-    from rmw_local.transports.asking import Asker
+    from rmw_local.mismatch.encounter import Encounter, Party
     from rmw_local.transports.background import Background
     from rmw_local.transports.interface import Transport
 
@@ -33,7 +35,7 @@ class Teller:
         self._untold: deque[Encounter] = deque(maxlen=_MOST_UNTOLD)
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
         self._is_telling = self._is_over = False
-        self._asker: Asker | None = None  # once there is something to ask
+        self._definitions: Definitions | None = None  # once there is something to ask
         self._domain = domain
         self._transport = transport
         self._actions: WeakKeyDictionary[GraphNode, WeakKeyDictionary[GraphNode, set[str]]]
@@ -53,13 +55,16 @@ class Teller:
         self._is_over = True
 
     def _tell(self) -> None:
-        from rmw_local.transports.asking import Asker  # late, and here: definitions hardly ever differ
+        # Late, and here: definitions hardly ever differ.
+        from rmw_local.transports.type_descriptions import definitions, question
 
-        asker = self._asker = self._asker or Asker(self._domain, self._transport, lambda: self._is_over)
+        if self._definitions is None:
+            self._definitions = definitions(self._domain, self._transport, lambda: self._is_over)
+        answers = self._definitions
         while batch := self._taken():
-            asker.ask(each.theirs for each in batch)
+            answers.ask(question(each.theirs) for each in batch)
             for encounter in self._without_repetitions(batch):
-                self._tell_of(encounter, asker)
+                self._tell_of(encounter, lambda party: answers.get(question(party)))
 
     def _taken(self) -> list[Encounter]:
         """All that is to be told; with nothing, the thread ends."""
@@ -69,13 +74,13 @@ class Teller:
             self._is_telling = bool(batch)
         return batch
 
-    def _tell_of(self, encounter: Encounter, asker: Asker) -> None:
+    def _tell_of(self, encounter: Encounter, elsewhere: Callable[[Party], Definition | None]) -> None:
         from rmw_local.mismatch.telling import tell_of  # late: only nodes that differ need it
 
         if self._is_over or encounter.mine.node.participant.has_ended:
             return
         try:
-            tell_of([encounter], asker.definition)
+            tell_of([encounter], elsewhere)
         except Exception as error:  # code of users: the next warning is to come, whatever it does
             say(f"a listener for definitions that differ failed with {error!r}")
 

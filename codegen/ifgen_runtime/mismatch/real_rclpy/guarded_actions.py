@@ -7,20 +7,21 @@ adapted here: a node that would adapt refuses.
 from __future__ import annotations
 
 import itertools
+import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Part, parts_of
-from ifgen_runtime.mismatch.real_rclpy.graph import Peer
-from ifgen_runtime.mismatch.real_rclpy.others import Others
-from ifgen_runtime.mismatch.real_rclpy.taking import key_of, participant_of
+from ifgen_runtime.mismatch.real_rclpy.peers import Others, Peer
 
 
 class ActionGuard:
-    """Knows the definitions of others, each by its participant of DDS, which is what a request tells."""
+    """Knows the definitions of all servers, or of all clients: rclpy does not tell whose a goal is."""
+
+    must_agree = True
 
     def __init__(self, node: Any, parts: tuple[Part, ...]) -> None:
-        self._others = [Others(node, part, participant_of) for part in parts]
+        self._others = [Others(node, part) for part in parts]
 
     def see(self, others: Iterable[tuple[Part, Peer]]) -> None:
         """Take note of all who are there now."""
@@ -31,25 +32,13 @@ class ActionGuard:
     def end(self) -> None:
         """Nothing is left to end."""
 
-    def look(self) -> None:
-        """Take note of all who are there now. Raises InvalidHandle where the node has been destroyed."""
-        for known in self._others:
-            known.look()
+    def all_agree(self, since: int | None = None) -> bool:
+        """Whether all have our definition who are there, or were after `since` [ns, system time].
 
-    def all_agree(self) -> bool:
-        """Whether all who were there at the last look have our definition."""
-        return all(known.hashes <= {known.part.type_hash} for known in self._others)
-
-    def agrees(self, request_id: Any) -> bool:
-        """Whether the client that a request has come from has our definition in all parts.
-
-        It may be discovered part by part. What a request is sent with is there before the request.
+        Raises InvalidHandle where the node has been destroyed.
         """
-        client = participant_of(key_of(request_id))
-        hashes = [(known.part.type_hash, known.hash_of(client)) for known in self._others]
-        return any(ours == found for ours, found in hashes) and all(
-            found in {ours, None} for ours, found in hashes
-        )
+        moment = time.time_ns() if since is None else since
+        return not any(known.differed_since(moment) for known in self._others)
 
 
 class _GuardedHandle:
@@ -71,34 +60,56 @@ class _GuardedHandle:
 
     def is_action_server_available(self) -> bool:
         """Whether a server is there, and none that is refused."""
-        self._guard.look()
         return bool(self._plain.is_action_server_available()) and self._guard.all_agree()
 
     def send_goal_request(self, request: Any) -> int:
         """Send a goal, and return its number. One that is refused is as one without a server."""
-        self._guard.look()
-        number = self._plain.send_goal_request(request) if self._guard.all_agree() else next(self._unsent)
-        return int(number)
+        return int(self._plain.send_goal_request(request) if self._guard.all_agree() else next(self._unsent))
 
     def take_goal_response(self, response_type: type[Any]) -> Any:
         """The number and the next response; None twice if there is none to deliver."""
-        return self._if_all_agree(self._plain.take_goal_response(response_type))
+        taken = self._plain.take_goal_response(response_type)
+        return taken if self._guard.all_agree() else (None, None)
 
     def take_result_response(self, response_type: type[Any]) -> Any:
         """The number and the next response; None twice if there is none to deliver."""
-        return self._if_all_agree(self._plain.take_result_response(response_type))
+        taken = self._plain.take_result_response(response_type)
+        return taken if self._guard.all_agree() else (None, None)
 
     def take_feedback(self, feedback_type: type[Any]) -> Any:
-        """The next feedback; None if there is none to deliver.
-
-        A goal is sent to servers of our definition only, and rclpy drops feedback of others.
-        """
+        """The next feedback; None if there is none to deliver."""
         feedback = self._plain.take_feedback(feedback_type)
         return feedback if self._guard.all_agree() else None
 
-    def _if_all_agree(self, taken: Any) -> Any:
-        self._guard.look()
-        return taken if self._guard.all_agree() else (None, None)
+
+class _GuardedServer:
+    """The methods that an executor calls of a waitable, for an action server with a guard.
+
+    rclpy does not tell when a goal has come. But nothing had where nothing was ready: what is taken later has
+    come after the look before that.
+    """
+
+    def __init__(self, server: Any, guard: ActionGuard) -> None:
+        self._is_ready: Callable[[Any], bool] = server.is_ready
+        self._take_data: Callable[[], dict[str, Any]] = server.take_data
+        self._guard = guard
+        self._asked = self._idle = time.time_ns()
+
+    def is_ready(self, wait_set: Any) -> bool:
+        """Whether something has come."""
+        is_ready, asked = self._is_ready(wait_set), self._asked
+        self._asked = time.time_ns()
+        if not is_ready:
+            self._idle = asked
+        return is_ready
+
+    def take_data(self) -> dict[str, Any]:
+        """All that has come, without goals and requests for results where clients differ."""
+        taken = self._take_data()
+        if not taken.keys().isdisjoint(("goal", "result")) and not self._guard.all_agree(self._idle):
+            taken.pop("goal", None)
+            taken.pop("result", None)
+        return taken
 
 
 def guard_action(node: Any, waitable: Any, role: str, name: str, cls: type[Any]) -> ActionGuard:
@@ -107,18 +118,6 @@ def guard_action(node: Any, waitable: Any, role: str, name: str, cls: type[Any])
     if role == "action client":
         waitable._client_handle = _GuardedHandle(waitable._client_handle, guard)
     else:
-        waitable.take_data = _guarded(waitable.take_data, guard)
+        server = _GuardedServer(waitable, guard)
+        waitable.is_ready, waitable.take_data = server.is_ready, server.take_data
     return guard
-
-
-def _guarded(take_data: Callable[[], dict[str, Any]], guard: ActionGuard) -> Callable[[], dict[str, Any]]:
-    """Of what a server takes, leave out goals and requests for results of clients that differ."""
-
-    def take_guarded() -> dict[str, Any]:
-        taken = take_data()
-        for kind in ("goal", "result"):
-            if kind in taken and not guard.agrees(taken[kind][0]):
-                del taken[kind]
-        return taken
-
-    return take_guarded

@@ -1,22 +1,30 @@
-"""A subscription that looks at each message's publisher before it delivers."""
+"""A subscription that knows whose definition a message has before it delivers it.
+
+Since Kilted rclpy tells each message's publisher. On Jazzy it does not. There, all who may have sent a
+message must have one definition.
+"""
 
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
+
+from rclpy import subscription as subscriptions
 
 from ifgen_runtime.adapters import short
+from ifgen_runtime.mismatch.limits import SeenSet
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.mismatch.real_rclpy.converting import decoded
-from ifgen_runtime.mismatch.real_rclpy.deciding import applied
+from ifgen_runtime.mismatch.real_rclpy.carriers import decoded
 from ifgen_runtime.mismatch.real_rclpy.endpoints import Part, parts_of
-from ifgen_runtime.mismatch.real_rclpy.graph import Peer, differs
 from ifgen_runtime.mismatch.real_rclpy.handles import Subscription
-from ifgen_runtime.mismatch.real_rclpy.others import Others
-from ifgen_runtime.mismatch.real_rclpy.taking import Taken, take
-from ifgen_runtime.mismatch.remembered import Once
+from ifgen_runtime.mismatch.real_rclpy.peers import Others, Peer, applied, differs
+
+_GID: Final = "publisher_gid"
+
+TELLS_PUBLISHER: Final = _GID in getattr(getattr(subscriptions, "MessageInfo", None), "__annotations__", ())
+"""Whether this rclpy tells with a message who has published it."""
 
 
 @dataclass(slots=True)
@@ -32,12 +40,14 @@ class IncompatibleType:
 class SubscriptionGuard:
     """Decides about each message of a topic."""
 
+    must_agree = not TELLS_PUBLISHER
+
     def __init__(self, node: Any, part: Part, policy: OnTypeMismatch) -> None:
         self._node = weakref.ref(node)
         self._part = part
         self._policy = policy
         self._others = Others(node, part)
-        self._foreign, self._said = Once(), Once()
+        self._refused, self._said = SeenSet(), SeenSet()
         self._event: Any = None
         self._counts = IncompatibleType(0, 0)
 
@@ -46,25 +56,21 @@ class SubscriptionGuard:
         found = [peer for _, peer in others]
         self._others.see(found)
         for peer in found:
-            if (
-                differs(peer, self._part)
-                and self._is_refused(peer.type_hash)
-                and self._foreign.is_new(peer.gid)
-            ):
+            if differs(peer, self._part) and self._is_refused(peer.type_hash) and self._refused.add(peer.gid):
                 self._counts.total_count += 1
                 self._counts.total_count_change += 1
                 if self._event is not None:
                     self._event.trigger()
 
-    def message(self, taken: Taken, raw: bool) -> Any:
+    def message(self, data: bytes, info: Mapping[str, Any], raw: bool) -> Any:
         """The message to deliver, or its bytes for `raw`; None if it is not to be delivered."""
-        type_hash = self._others.hash_of(taken.gid)
-        if type_hash is None or any(map(self._is_refused, self._others.hashes | {type_hash})):
+        type_hash = self._hash_of(info)
+        if type_hash is None or self._is_refused(type_hash):
             return None
         if raw:
-            return taken.data if type_hash == self._part.type_hash else None
+            return data if type_hash == self._part.type_hash else None
         try:
-            message = decoded(taken.data, type_hash, self._part.cls)
+            message = decoded(data, type_hash, self._part.cls)
         except Exception as error:  # the user's adapter: what a peer sends must not end the node's spin
             self._say(f"The adapter from {short(type_hash)} failed, and the message was dropped: {error!r}")
             return None
@@ -72,7 +78,7 @@ class SubscriptionGuard:
             self._say(f"A message did not fit its definition, {short(type_hash)}, and was dropped")
         return message
 
-    def call_on_foreign(self, callback: Callable[[IncompatibleType], object] | None, group: Any) -> None:
+    def call_on_refused(self, callback: Callable[[IncompatibleType], object] | None, group: Any) -> None:
         """Call back in this callback group when a publisher comes that is refused."""
         node = self._node()
         if callback is None or node is None:
@@ -92,6 +98,15 @@ class SubscriptionGuard:
         if node is not None and event is not None:
             node.destroy_guard_condition(event)
 
+    def _hash_of(self, info: Mapping[str, Any]) -> str | None:
+        """The definition of a message; None if nobody can tell, or if somebody is refused."""
+        gid = info.get(_GID)
+        if gid is None:
+            senders = self._others.senders_at(info["received_timestamp"])
+            return next(iter(senders)) if len(senders) == 1 else None
+        type_hash = self._others.hash_of(gid["data"])
+        return None if any(map(self._is_refused, self._others.hashes)) else type_hash
+
     def _is_refused(self, type_hash: str) -> bool:
         if type_hash == self._part.type_hash:
             return False
@@ -99,7 +114,7 @@ class SubscriptionGuard:
 
     def _say(self, text: str) -> None:
         node = self._node()
-        if node is not None and self._said.is_new(text):
+        if node is not None and self._said.add(text):
             node.get_logger().error(
                 f"topic '{self._part.topic.removeprefix('rt')}': {text}. This is said once."
             )
@@ -110,11 +125,14 @@ class GuardedSubscription(Subscription):
 
     guard: SubscriptionGuard
 
-    def take_message(self, message_type: type[Any], raw: bool) -> tuple[Any, dict[str, int | None]] | None:
+    def take_message(self, message_type: type[Any], raw: bool) -> tuple[Any, Mapping[str, Any]] | None:
         """The next message and what is known of it, as rclpy takes it; None if there is none to deliver."""
-        taken = take(self.pointer)
-        message = None if taken is None else self.guard.message(taken, raw)
-        return None if taken is None or message is None else (message, taken.info)
+        taken = super().take_message(message_type, True)
+        if taken is None:
+            return None
+        data, info = taken
+        message = self.guard.message(data, info, raw)
+        return None if message is None else (message, info)
 
 
 def guarded_subscription(
