@@ -73,7 +73,7 @@ DOCUMENT = [
     ("wrong-value", "nodl_version: 2\ncodegen: {cpp: ⟦5⟧}\n", "must be a map"),
     ("wrong-value", "nodl_version: 2\nparameters: ⟦[]⟧\n", "a map from names"),
     ("invalid-include", "nodl_version: 2\ninclude: [{ref: ⟦other.nodl.yaml⟧}]\n", "local://"),
-    ("invalid-include", "nodl_version: 2\ninclude: [{ref: ⟦loca://x⟧}]\n", "did you mean `local://`"),
+    ("unknown-include", "nodl_version: 2\ninclude: [{ref: ⟦loca://x⟧}]\n", "did you mean `local://`"),
     (
         "unknown-include",
         "nodl_version: 2\ninclude: [{ref: ⟦local://talkr.nodl.yaml⟧}]\n",

@@ -50,8 +50,6 @@ def _parameter(key: Key, node: Node, problems: FileProblems) -> Parameter | None
     problem = names.parameter_name_problem(key.name)
     if problem:
         problems.error(invalid_name, key.name, key.span, problem)
-    elif names.reserved_parameter(key.name):
-        problems.error(_reserved, key.name, key.span)
     if inner := _first_inside(node):
         problems.error(_nested_group, key, inner)
         return None
@@ -138,16 +136,6 @@ def _nested_group(group: Key, inner: Key) -> Diagnostic:
         f"parameters are not grouped by maps: a parameter has no key `{shorten(inner.name)}`",
         Label(inner.span, "unknown key"),
         help=f"write the whole name: `{name}: {{type: ...}}`",
-    )
-
-
-def _reserved(name: str, span: Span) -> Diagnostic:
-    """Say that rclpy declares a parameter itself."""
-    return Diagnostic(
-        "reserved-parameter",
-        f"rclpy declares the parameter `{shorten(name)}` itself",
-        Label(span),
-        help="remove it: each node has it anyway",
     )
 
 
