@@ -194,8 +194,13 @@ def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:
     names = {
         endpoint.type_name for package in packages for found in package.nodes for endpoint in found.endpoints
     }
+    return registry_of(names, search)
+
+
+def registry_of(type_names: Iterable[str], search: SearchPath) -> Registry:
+    """The interfaces of these names, as far as they exist, and what those need. Raises InputError."""
     needed: dict[str, list[InterfaceFile]] = {}
-    for type_name in sorted(names):
+    for type_name in sorted(type_names):
         package_name, folder, name = type_name.split("/")
         package = search.package(package_name)
         file = package.interface(folder, name) if package else None

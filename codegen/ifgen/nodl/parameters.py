@@ -140,9 +140,9 @@ def _nested_group(group: Key, inner: Key) -> Diagnostic:
 
 
 def _wrong_default(problem: BadValue, type_: ParameterType) -> Diagnostic:
-    """Say that a default is not of the parameter's type."""
+    """Say that a default is not of the parameter's type. NoDL's schema looks at those of bytes alone."""
     return Diagnostic(
-        "wrong-default",
+        "wrong-value" if type_.base == "byte" else "wrong-default",
         f"a default of type `{spelled(type_)}` must be {problem.expected}",
         Label(problem.node.span, f"this is {shown(problem.node)}"),
         help=yaml_surprise(problem.node, problem.expected),

@@ -17,7 +17,14 @@ from ifgen.reading.search_path import SearchPath
 OURS: Final = frozenset(
     {
         *("unknown-package", "unknown-type", "wrong-interface-kind", "two-types"),
-        *("unfit-validator", "mixed-bounds", "empty-bounds", "rejected-default", "missing-function"),
+        *(
+            "unfit-validator",
+            "mixed-bounds",
+            "empty-bounds",
+            "wrong-default",
+            "rejected-default",
+            "missing-function",
+        ),
         *("duplicate-timer", "unknown-publisher", "unknown-parameter", "invalid-option", "validator-module"),
         *("invalid-node-name", "two-bases", "invalid-codegen"),
     }
