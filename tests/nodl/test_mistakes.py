@@ -73,7 +73,7 @@ DOCUMENT = [
     ("wrong-value", "nodl_version: 2\ncodegen: {cpp: ⟦5⟧}\n", "must be a map"),
     ("wrong-value", "nodl_version: 2\nparameters: ⟦[]⟧\n", "a map from names"),
     ("invalid-include", "nodl_version: 2\ninclude: [{ref: ⟦other.nodl.yaml⟧}]\n", "local://"),
-    ("invalid-include", "nodl_version: 2\ninclude: [{ref: ⟦loca://x⟧}]\n", "did you mean `local://`"),
+    ("unknown-include", "nodl_version: 2\ninclude: [{ref: ⟦loca://x⟧}]\n", "did you mean `local://`"),
     (
         "unknown-include",
         "nodl_version: 2\ninclude: [{ref: ⟦local://talkr.nodl.yaml⟧}]\n",
@@ -160,7 +160,7 @@ PARAMETERS = [
     ("wrong-default", parameter("type: bool, default_value: ⟦'true'⟧"), "true or false"),
     ("wrong-default", parameter("type: int_array, default_value: ⟦5⟧"), "a list"),
     ("wrong-default", parameter("type: int_array, default_value: [1, ⟦2.5⟧]"), "64 bits"),
-    ("wrong-default", parameter("type: byte_array, default_value: [1, ⟦256⟧]"), "0 to 255"),
+    ("wrong-value", parameter("type: byte_array, default_value: [1, ⟦256⟧]"), "0 to 255"),
     ("wrong-default", parameter("type: string_fixed_3, default_value: ⟦four⟧"), "at most 3 characters"),
     ("wrong-default", parameter("type: int_array_fixed_1, default_value: ⟦[1, 2]⟧"), "at most 1 values"),
     ("wrong-default", parameter("type: none, default_value: ⟦1⟧"), "no value"),

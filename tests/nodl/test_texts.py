@@ -54,7 +54,12 @@ def node() -> NodeDescription:
         "Talker",
         "talker.py",
         tuple(parameters),
-        *([()] * 6),
+        (),
+        (),
+        (),
+        (),
+        (),
+        (),
     )
 
 

@@ -6,16 +6,16 @@ import os
 import re
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from ifgen.definition.explain import did_you_mean
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
-from ifgen.nodl import names
+from ifgen.nodl import barriers, names
 from ifgen.nodl.document import Document, Include
-from ifgen.nodl.model import Category, Endpoint, NodeDescription, Parameter
+from ifgen.nodl.model import BaseClass, Category, Endpoint, Interface, NodeDescription, Parameter
 from ifgen.reading import storage
 from ifgen.reading.packages import NODE_EXTENSIONS, NodeFile, node_name
 from ifgen.reading.search_path import SearchPath
@@ -29,12 +29,18 @@ _NODL: Final = "nodl://"
 
 
 @dataclass(frozen=True, slots=True)
-class _Reached:
-    """A document, the include that led to it, and the names of the documents from the root to it."""
+class Part:
+    """A document of a node, the include that led to it, and the names of the documents from the root to it.
+
+    `exists` says that it stands for code that exists, itself or by what includes it; `is_barrier` that it is
+    the first one on its way to say so.
+    """
 
     document: Document
     include: Include | None
     chain: tuple[str, ...]
+    exists: bool = False
+    is_barrier: bool = False
 
 
 def documents(
@@ -42,9 +48,9 @@ def documents(
     search: SearchPath,
     read: Callable[[NodeFile], Document | None],
     report: Callable[[Diagnostic], None],
-) -> list[Document]:
+) -> list[Part]:
     """A document and all that it includes, breadth first. What is wrong with the includes is reported."""
-    start = _Reached(root, None, (root.source.path.name,))
+    start = Part(root, None, (root.source.path.name,))
     reached = {real(root.source.path): start}
     queue = deque([start])
     while queue:
@@ -59,11 +65,13 @@ def documents(
                 report(_included_twice(include, chain, reached[path]))
             elif len(reached) >= MAX_DOCUMENTS:
                 report(_too_many(include))
-                return [known.document for known in reached.values()]
+                return list(reached.values())
             elif (document := read(file)) is not None:
-                reached[path] = _Reached(document, include, chain)
+                is_barrier = document.barrier is not None and not current.exists
+                exists = current.exists or document.barrier is not None
+                reached[path] = Part(document, include, chain, exists, is_barrier)
                 queue.append(reached[path])
-    return [known.document for known in reached.values()]
+    return list(reached.values())
 
 
 def local_files(document: Document) -> Iterator[Path]:
@@ -107,6 +115,8 @@ def _found(
             report(_invalid(include))
         elif (file := search.find_node(package, name)) is not None:
             return file
+        elif (package, name) in barriers.OFFICIAL:
+            return NodeFile(barriers.OFFICIAL[package, name])
         else:
             report(_no_node(include, package, name, search))
     else:
@@ -126,7 +136,7 @@ def _invalid(include: Include) -> Diagnostic:
 def _unknown_scheme(include: Include) -> Diagnostic:
     scheme = include.reference.partition("://")[0]
     return Diagnostic(
-        "invalid-include",
+        "unknown-include",
         f"references of the scheme `{shorten(scheme)}` cannot be followed",
         Label(include.span),
         help=did_you_mean(f"{scheme}://", (_LOCAL, _NODL)) or "write `local://` or `nodl://`",
@@ -160,7 +170,7 @@ def _no_node(include: Include, package: str, name: str, search: SearchPath) -> D
     )
 
 
-def _included_twice(include: Include, chain: tuple[str, ...], first: _Reached) -> Diagnostic:
+def _included_twice(include: Include, chain: tuple[str, ...], first: Part) -> Diagnostic:
     chains = f"{' > '.join(first.chain)}\nand  {' > '.join(chain)}"
     secondary = (Label(first.include.span, "reached first from here"),) if first.include else ()
     is_cycle = first.include is None or first.chain == chain[: len(first.chain)]
@@ -176,58 +186,107 @@ def _too_many(include: Include) -> Diagnostic:
 
 
 def merged(
-    documents: Sequence[Document], report: Callable[[Iterable[Diagnostic]], None]
-) -> tuple[list[Parameter], list[Endpoint]]:
-    """The parameters and endpoints of all documents, the root's first; of two with one name the first."""
+    parts: Sequence[Part], report: Callable[[Iterable[Diagnostic]], None]
+) -> tuple[Interface, Interface]:
+    """The interface of all documents, the root's first, and the share of those whose code exists.
+
+    Of two entries with one name, the first counts.
+    """
     parameters: dict[str, Parameter] = {}
     endpoints: dict[tuple[Category, str], Endpoint] = {}
-    for document in documents:
-        for parameter in document.parameters:
+    existing: set[int] = set()
+    for part in parts:
+        for parameter in part.document.parameters:
             first = parameters.setdefault(parameter.name, parameter)
             if first is not parameter:
                 report([_duplicate("parameter", parameter.name, parameter.span, first.span)])
-        for endpoint in document.endpoints:
+        for endpoint in part.document.endpoints:
             known = endpoints.setdefault((endpoint.category, endpoint.name), endpoint)
             if known is not endpoint:
                 report([_duplicate(endpoint.category.singular, endpoint.name, endpoint.span, known.span)])
-    return list(parameters.values()), list(endpoints.values())
+        if part.exists:
+            existing.update(id(each) for each in (*part.document.parameters, *part.document.endpoints))
+    whole = Interface(tuple(parameters.values()), tuple(endpoints.values()))
+    inherited = Interface(
+        tuple(each for each in whole.parameters if id(each) in existing),
+        tuple(each for each in whole.endpoints if id(each) in existing),
+    )
+    return whole, inherited
 
 
 def described(
     package: str,
     file: NodeFile,
-    root: Document,
-    parameters: list[Parameter],
-    endpoints: list[Endpoint],
+    parts: Sequence[Part],
     problems: FileProblems,
-) -> NodeDescription:
-    """The description of a node; what is wrong with its name or its options is in `problems`."""
+    report: Callable[[Iterable[Diagnostic]], None],
+) -> tuple[NodeDescription, Interface]:
+    """The description of a node, and its whole interface in the order of its documents.
+
+    What is wrong with its name or its options is in `problems`, all else is reported.
+    """
+    root = parts[0].document
     if problem := names.node_name_problem(file.name):
         problems.error(_invalid_node_name, file, root, problem)
-    of = {category: tuple(e for e in endpoints if e.category == category) for category in Category}
+    whole, inherited = merged(parts, report)
+    base = _base(parts, report)
+    is_lifecycle = base is not None and base.is_lifecycle
     description = NodeDescription(
         package=package,
         name=file.name,
         description=root.description,
-        style="callbacks",
+        style="lifecycle" if is_lifecycle else "callbacks",
         node_class=names.class_name(file.name),
         business_file=f"{file.name}.py",
-        parameters=tuple(parameters),
-        publishers=of[Category.PUBLISHER],
-        subscriptions=of[Category.SUBSCRIPTION],
-        service_servers=of[Category.SERVICE_SERVER],
-        service_clients=of[Category.SERVICE_CLIENT],
-        action_servers=of[Category.ACTION_SERVER],
-        action_clients=of[Category.ACTION_CLIENT],
+        parameters=whole.parameters,
+        **_lists(()),
+        base=base,
+        inherited=inherited,
+        references=tuple(_references(parts, package)),
+        codegen=root.codegen,
         path=file.path,
         span=Span(root.source, 0, 0),
     )
-    if root.options is None:
-        return description
-    # pydantic is worth its import only where there is something for it.
-    from ifgen.nodl import options
+    if root.options is not None:
+        # pydantic is worth its import only where there is something for it.
+        from ifgen.nodl import options
 
-    return options.applied(description, root.options, problems)
+        description = options.applied(description, root.options, problems)
+    # The options have said which functions the validators of parameters are.
+    inherits = {parameter.name for parameter in inherited.parameters}
+    own = Interface(
+        tuple(each for each in description.parameters if each.name not in inherits),
+        whole.without(inherited).endpoints,
+    )
+    own, reserved = barriers.without_framework(own, is_lifecycle=description.style == "lifecycle")
+    if root.barrier is None:
+        report(map(barriers.reserved_parameter, reserved.parameters))
+        report(map(barriers.reserved_endpoint, reserved.endpoints))
+    lists = _lists(own.endpoints)
+    return replace(description, parameters=own.parameters, reserved=reserved, **lists), whole
+
+
+def _lists(endpoints: Iterable[Endpoint]) -> dict[str, Any]:
+    """The six lists of a description, as keyword arguments."""
+    known = tuple(endpoints)
+    return {category.value: tuple(e for e in known if e.category == category) for category in Category}
+
+
+def _base(parts: Sequence[Part], report: Callable[[Iterable[Diagnostic]], None]) -> BaseClass | None:
+    found = [part.document.barrier for part in parts if part.is_barrier and part.document.barrier]
+    base, wrong = barriers.base_of(found)
+    unclear = (each for each in found if each.base is None and not each.is_mixin)
+    report([*wrong, *map(barriers.no_base, unclear)])
+    return base
+
+
+def _references(parts: Sequence[Part], package: str) -> Iterator[str]:
+    """The names by which others include the documents whose code exists."""
+    for part in parts:
+        if part.is_barrier and part.include is not None:
+            reference = part.include.reference
+            name = node_name(part.document.source.path.name)
+            yield f"{_NODL}{package}/{name}" if reference.startswith(_LOCAL) and name else reference
 
 
 def _duplicate(what: str, name: str, span: Span | None, first: Span | None) -> Diagnostic:

@@ -8,7 +8,8 @@ from typing import Final
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Source, Span
-from ifgen.nodl import endpoints, parameters
+from ifgen.nodl import barriers, endpoints, parameters
+from ifgen.nodl.barriers import Barrier
 from ifgen.nodl.model import Category, Endpoint, Parameter
 from ifgen.nodl.syntax import explain_syntax, reader, tree
 from ifgen.nodl.syntax.tree import MAX_CHARACTERS, ListNode, MapNode, Node, ScalarNode
@@ -39,6 +40,7 @@ class Document:
     """The contents of one file, as far as they are valid.
 
     `options` is what is under `codegen.ifgen`, `root` is all of it; both are unchecked, and may be missing.
+    `barrier` says that its code exists, and `codegen` is what it says to other tools, as (tool, JSON).
     """
 
     source: Source
@@ -48,6 +50,13 @@ class Document:
     endpoints: tuple[Endpoint, ...] = ()
     options: MapNode | None = None
     root: MapNode | None = None
+    barrier: Barrier | None = None
+    codegen: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def stands_alone(self) -> bool:
+        """Whether it is more than a part of the documents that include it."""
+        return self.options is not None or self.barrier is not None
 
 
 def parse(source: Source, problems: FileProblems) -> Node | None:
@@ -87,6 +96,8 @@ def read(source: Source, search: SearchPath, problems: FileProblems) -> Document
         tuple(e for category in Category for e in endpoints.read(root, category, search, problems)),
         own if isinstance(own, MapNode) else None,
         root,
+        barriers.read(codegen, problems),
+        barriers.other_tools(codegen),
     )
 
 

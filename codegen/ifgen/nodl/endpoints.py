@@ -102,7 +102,7 @@ def _qos(node: Node, problems: FileProblems) -> QosProfile | None:
 def _type_name(
     text: str, span: Span, category: Category, search: SearchPath, problems: FileProblems
 ) -> str | None:
-    """The full name of an interface that exists; None with a problem reported if it does not."""
+    """The full name of an interface, None for a text that is none. If it does not exist, that is reported."""
     parts = names.split_type(text)
     if parts is None:
         problems.error(_invalid_type, text, span, category, search)
@@ -114,10 +114,8 @@ def _type_name(
     package = search.package(package_name)
     if package is None or not package.known_files():
         problems.error(_unknown_package, package_name, span, search)
-        return None
-    if package.interface(category.folder, name) is None:
+    elif package.interface(category.folder, name) is None:
         problems.error(_unknown_type, name, span, category, package, search)
-        return None
     return f"{package_name}/{category.folder}/{name}"
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ifgen.definition import file_names
@@ -13,9 +13,9 @@ from ifgen.definition.resolve import resolve
 from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
 from ifgen.nodl import composition, document, rules
 from ifgen.nodl.document import Document, Written, written
-from ifgen.nodl.model import NodeDescription, NodePackage, Nodes, PackageMetadata
+from ifgen.nodl.model import Interface, NodeDescription, NodePackage, Nodes, PackageMetadata
 from ifgen.reading import package_xml
-from ifgen.reading.packages import InterfaceFile, NodeFile, PackageFiles, node_name
+from ifgen.reading.packages import NODE_FOLDER, InterfaceFile, NodeFile, PackageFiles, node_name
 from ifgen.reading.search_path import SearchPath
 
 
@@ -36,6 +36,33 @@ def load(packages: Sequence[PackageFiles], search: SearchPath) -> Nodes:
     if errors:
         raise InputError([*errors, *warnings])
     return Nodes(loaded, registry, tuple(warnings))
+
+
+@dataclass(frozen=True, slots=True)
+class Loaded:
+    """A document with all that it includes.
+
+    `whole` is its interface in the order of its documents. It `exists` if it stands for code that does.
+    """
+
+    description: NodeDescription
+    whole: Interface
+    sources: tuple[Source, ...]
+    written: Written
+    exists: bool
+
+
+def load_document(path: Path, search: SearchPath) -> tuple[Loaded | None, list[Diagnostic]]:
+    """One document with its includes, wherever it is, and all that is wrong with it.
+
+    It is None if it cannot be read. Interfaces need not exist, which is among the findings.
+    """
+    path = path.absolute()
+    in_package = path.parent.name == NODE_FOLDER
+    loader = _Loader(search, [composition.real(path.parent)])
+    loaded = loader.document(path.parent.parent.name if in_package else "", NodeFile(path))
+    errors, warnings = loader.findings()
+    return loaded, [*errors, *warnings]
 
 
 class _Loader:
@@ -62,12 +89,13 @@ class _Loader:
             self._problems_of[path].sees_all = not package.partial
         self._report(_same_names([found for _, found in read.values()]))
         roots = _roots({path: found for path, (_, found) in read.items()})
-        nodes = [self._node(package, *read[path]) for path in roots]
+        nodes = [self._node(package.name, *read[path]) for path in roots]
         sources = {path: found.source for path, (_, found) in read.items()}
-        for description, documents, names in nodes:
-            sources.update((composition.real(found.source.path), found.source) for found in documents)
-            self._report(rules.check_node(description, names))
-        descriptions = sorted((description for description, *_ in nodes), key=lambda found: found.name)
+        for loaded in nodes:
+            sources.update((composition.real(each.path), each) for each in loaded.sources)
+            self._report(rules.check_node(loaded.description, loaded.written))
+        ordered = sorted(nodes, key=lambda loaded: loaded.description.name)
+        descriptions = [loaded.description for loaded in ordered if not loaded.exists]
         self._report(rules.check_package(descriptions))
         return NodePackage(
             package.name,
@@ -75,6 +103,7 @@ class _Loader:
             tuple(descriptions),
             _metadata(package.root),
             tuple(sources.values()),
+            tuple(loaded.description for loaded in ordered if loaded.exists),
         )
 
     def findings(self) -> tuple[list[Diagnostic], list[Diagnostic]]:
@@ -86,9 +115,16 @@ class _Loader:
         errors = one_for_each_cause(diagnostic for diagnostic in found if diagnostic.severity == "error")
         return errors, [diagnostic for diagnostic in found if diagnostic.severity == "warning"]
 
-    def _node(
-        self, package: PackageFiles, file: NodeFile, root: Document
-    ) -> tuple[NodeDescription, list[Document], Written]:
+    def document(self, package: str, file: NodeFile) -> Loaded | None:
+        """One document with its includes, for itself; None if it cannot be read."""
+        root = self._read(file)
+        if root is None:
+            return None
+        loaded = self._node(package, file, root)
+        self._report(rules.check_node(loaded.description, loaded.written))
+        return loaded
+
+    def _node(self, package: str, file: NodeFile, root: Document) -> Loaded:
         missed: list[Diagnostic | None] = []
 
         def read(other: NodeFile) -> Document | None:
@@ -96,12 +132,18 @@ class _Loader:
             missed.extend([] if found else [None])
             return found
 
-        documents = composition.documents(root, self._search, read, missed.append)
+        parts = composition.documents(root, self._search, read, missed.append)
         self._report(filter(None, missed))
-        parameters, endpoints = composition.merged(documents, self._report)
         problems = self._problems_of[composition.real(root.source.path)]
-        description = composition.described(package.name, file, root, parameters, endpoints, problems)
-        return description, documents, written(documents, complete=not missed)
+        description, whole = composition.described(package, file, parts, problems, self._report)
+        documents = [part.document for part in parts]
+        return Loaded(
+            description,
+            whole,
+            tuple(each.source for each in documents),
+            written(documents, complete=not missed),
+            exists=root.barrier is not None,
+        )
 
     def _read(self, file: NodeFile) -> Document | None:
         """A document, read once; None if it cannot be read."""
@@ -152,8 +194,13 @@ def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:
     names = {
         endpoint.type_name for package in packages for found in package.nodes for endpoint in found.endpoints
     }
+    return registry_of(names, search)
+
+
+def registry_of(type_names: Iterable[str], search: SearchPath) -> Registry:
+    """The interfaces of these names, as far as they exist, and what those need. Raises InputError."""
     needed: dict[str, list[InterfaceFile]] = {}
-    for type_name in sorted(names):
+    for type_name in sorted(type_names):
         package_name, folder, name = type_name.split("/")
         package = search.package(package_name)
         file = package.interface(folder, name) if package else None
@@ -168,12 +215,13 @@ def _registry(packages: Iterable[NodePackage], search: SearchPath) -> Registry:
 def _roots(documents: Mapping[Path, Document]) -> list[Path]:
     """The documents of a package that are nodes: all except those that others of it include.
 
-    An included document is a part of others, unless it has its own `codegen.ifgen`. In a cycle of includes
+    An included document is a part of others, unless it has its own `codegen.ifgen`, or stands for code that
+    exists. In a cycle of includes
     the first document counts as a node, so that the cycle is noticed.
     """
     included = {path: list(composition.local_files(documents[path])) for path in documents}
     parts = {other for others in included.values() for other in others}
-    roots = [path for path, found in documents.items() if path not in parts or found.options is not None]
+    roots = [path for path, found in documents.items() if path not in parts or found.stands_alone]
     reached: set[Path] = set()
     pending = list(roots)
     while len(reached) < len(documents):

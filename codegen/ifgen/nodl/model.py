@@ -144,12 +144,51 @@ class Timer:
 
 
 @dataclass(frozen=True, slots=True)
+class BaseClass:
+    """A class that a node derives from, and its method that makes publishers."""
+
+    module: str
+    name: str
+    publisher_method: str = "create_publisher"
+
+    @property
+    def is_lifecycle(self) -> bool:
+        """Whether nodes of this class have a managed lifecycle."""
+        return self.publisher_method == "create_lifecycle_publisher"
+
+
+@dataclass(frozen=True, slots=True)
+class Interface:
+    """Parameters and endpoints of a node."""
+
+    parameters: tuple[Parameter, ...] = ()
+    endpoints: tuple[Endpoint, ...] = ()
+
+    def without(self, other: Interface) -> Interface:
+        """The same without those of another."""
+        taken = {id(each) for each in (*other.parameters, *other.endpoints)}
+        return Interface(
+            tuple(each for each in self.parameters if id(each) not in taken),
+            tuple(each for each in self.endpoints if id(each) not in taken),
+        )
+
+    def __add__(self, other: Interface) -> Interface:
+        """Both together."""
+        return Interface(self.parameters + other.parameters, self.endpoints + other.endpoints)
+
+
+@dataclass(frozen=True, slots=True)
 class NodeDescription:
     """One node: what its file and everything that this includes say, and where it comes from.
 
     `name` is the file's name without `.nodl.yaml`. `node_class` and `business_file` (the user's module) are
     always set: `GaitPlanner` and `gait_planner.py` for `gait_planner` unless `codegen.ifgen` says otherwise.
     `tests` names the groups of tests to generate; None stands for all that the node has a use for.
+
+    `base` is the class to derive from where an included document names one. `inherited` is what is behind
+    such documents, `reserved` what the node declares although rclpy makes it: nothing is generated for
+    either. `references` are the `nodl://` names of those documents, `codegen` is what the document says to
+    other tools, as (tool, JSON).
     """
 
     package: str
@@ -168,6 +207,11 @@ class NodeDescription:
     timers: tuple[Timer, ...] = ()
     tests: tuple[str, ...] | None = None
     on_type_mismatch: MismatchPolicy | None = None
+    base: BaseClass | None = None
+    inherited: Interface = Interface()
+    reserved: Interface = Interface()
+    references: tuple[str, ...] = ()
+    codegen: tuple[tuple[str, str], ...] = ()
     path: Path | None = field(default=None, compare=False, repr=False)
     span: Span | None = field(default=None, compare=False, repr=False)
 
@@ -182,6 +226,11 @@ class NodeDescription:
             *self.action_servers,
             *self.action_clients,
         )
+
+    @property
+    def whole(self) -> Interface:
+        """Everything that a running node has, what it inherits and what rclpy makes included."""
+        return Interface(self.parameters, self.endpoints) + self.reserved + self.inherited
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +250,8 @@ class NodePackage:
     """The nodes of one package, by name, and the folder that they come from.
 
     `sources` is every document that was read for them, included ones too; `metadata` is None where there
-    is no package.xml.
+    is no package.xml. `parts` are documents for classes that exist: they are installed, so that others can
+    include them, but nothing is generated for them.
     """
 
     name: str
@@ -209,6 +259,7 @@ class NodePackage:
     nodes: tuple[NodeDescription, ...]
     metadata: PackageMetadata | None = None
     sources: tuple[Source, ...] = field(default=(), compare=False, repr=False)
+    parts: tuple[NodeDescription, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -126,7 +126,7 @@ def applied(node: NodeDescription, tree: MapNode, problems: FileProblems) -> Nod
             problems.error(_no_function, _place(tree, "validators", validator), function)
     return replace(
         node,
-        style=options.style,
+        style=_style(options, node, tree, problems),
         node_class=options.node_class or node.node_class,
         business_file=file or node.business_file,
         on_type_mismatch=options.on_type_mismatch,
@@ -136,6 +136,15 @@ def applied(node: NodeDescription, tree: MapNode, problems: FileProblems) -> Nod
         if options.tests is None
         else tuple(dict.fromkeys(_GROUPS.get(group, group) for group in options.tests)),
     )
+
+
+def _style(options: Options, node: NodeDescription, tree: MapNode, problems: FileProblems) -> Style:
+    """The style that is asked for, else the one that the base class has."""
+    if tree.get("style") is None:
+        return node.style
+    if node.base and node.base.is_lifecycle and options.style in {"callbacks", "asyncio"}:
+        problems.error(_no_style_of_base, _place(tree, "style"), options.style, node.base.name)
+    return options.style
 
 
 def _without(node: Node, wrong: Set[Location], at: Location = ()) -> object:
@@ -241,6 +250,15 @@ def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
             return wrong_value(node, name, f"one of the texts {', '.join(options)}")
         case other:
             return wrong_value(node, name, _EXPECTED.get(other, "something else"))
+
+
+def _no_style_of_base(span: Span, style: str, base: str) -> Diagnostic:
+    return Diagnostic(
+        "invalid-option",
+        f"a node of the style `{style}` cannot derive from {base}, which an included document names",
+        Label(span),
+        help="write `style: lifecycle`, or leave it out",
+    )
 
 
 def _no_identifier(span: Span, key: str, text: str) -> Diagnostic:

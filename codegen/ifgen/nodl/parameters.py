@@ -50,8 +50,6 @@ def _parameter(key: Key, node: Node, problems: FileProblems) -> Parameter | None
     problem = names.parameter_name_problem(key.name)
     if problem:
         problems.error(invalid_name, key.name, key.span, problem)
-    elif names.reserved_parameter(key.name):
-        problems.error(_reserved, key.name, key.span)
     if inner := _first_inside(node):
         problems.error(_nested_group, key, inner)
         return None
@@ -141,20 +139,10 @@ def _nested_group(group: Key, inner: Key) -> Diagnostic:
     )
 
 
-def _reserved(name: str, span: Span) -> Diagnostic:
-    """Say that rclpy declares a parameter itself."""
-    return Diagnostic(
-        "reserved-parameter",
-        f"rclpy declares the parameter `{shorten(name)}` itself",
-        Label(span),
-        help="remove it: each node has it anyway",
-    )
-
-
 def _wrong_default(problem: BadValue, type_: ParameterType) -> Diagnostic:
-    """Say that a default is not of the parameter's type."""
+    """Say that a default is not of the parameter's type. NoDL's schema looks at those of bytes alone."""
     return Diagnostic(
-        "wrong-default",
+        "wrong-value" if type_.base == "byte" else "wrong-default",
         f"a default of type `{spelled(type_)}` must be {problem.expected}",
         Label(problem.node.span, f"this is {shown(problem.node)}"),
         help=yaml_surprise(problem.node, problem.expected),

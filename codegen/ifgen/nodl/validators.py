@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal
 
@@ -171,6 +171,8 @@ def _built_in(
     if isinstance(arguments, BadValue):
         problems.error(_invalid_arguments, name, arguments)
         return None
+    for item in _written_otherwise(argument):
+        problems.warning(_text_for_others, name, item)
     if rule.arguments == "pair" and _number(arguments[0]) > _number(arguments[1]):
         problems.error(_empty_bounds, name, argument)
         return None
@@ -211,6 +213,17 @@ def _scalars(nodes: Sequence[Node], base: str) -> tuple[ScalarValue, ...] | BadV
             return BadValue(node, "a number to compare with")
         found.append(scalar)
     return tuple(found)
+
+
+def _written_otherwise(argument: Node) -> Iterator[ScalarNode]:
+    """The numbers that are texts in YAML 1.1, which NoDL's schema does not take: `1e3`."""
+    items = argument.items if isinstance(argument, ListNode) else (argument,)
+    for item in items:
+        if isinstance(item, ScalarNode) and isinstance(item.value, str):
+            read = values.read(item)
+            assert isinstance(read, ScalarNode)
+            if isinstance(read.value, int | float) and not isinstance(read.value, bool):
+                yield item
 
 
 def _whole(node: Node) -> Node:
@@ -282,6 +295,17 @@ def _invalid_arguments(name: str, problem: BadValue) -> Diagnostic:
         f"`{name}` takes {problem.expected}",
         Label(problem.node.span, f"this is {shown(problem.node)}"),
         help=yaml_surprise(problem.node, problem.expected),
+    )
+
+
+def _text_for_others(name: str, node: ScalarNode) -> Diagnostic:
+    """Say that a number is a text in YAML 1.1."""
+    return Diagnostic(
+        "number-as-text",
+        f"`ros2 nodl` takes this argument of `{name}` for a text, and refuses it",
+        Label(node.span),
+        help=yaml_surprise(node, "a number"),
+        severity="warning",
     )
 
 

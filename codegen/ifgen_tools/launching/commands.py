@@ -91,7 +91,7 @@ def launch(
     if source is not click.core.ParameterSource.COMMANDLINE:
         for word in given:
             transport = _TRANSPORTS.get(word, transport)
-    chosen = _activate(transport, output)
+    chosen = activate(transport, output)
     path = _path(paths, output)
     from launch import LaunchContext
     from launch.actions import IncludeLaunchDescription
@@ -151,7 +151,7 @@ def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
     return paths, given
 
 
-def _activate(transport: Literal["local", "rclpy", "auto"], output: Path) -> str:
+def activate(transport: Literal["local", "rclpy", "auto"], output: Path) -> str:
     """Let launch files find the packages of a transport, and our launch before others; return which one."""
     from ifgen import resources
     from ifgen.activation import ActivationError, put_on_path

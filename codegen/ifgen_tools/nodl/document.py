@@ -26,7 +26,7 @@ _LIFECYCLE: Final = (
 _TRANSITION_EVENT: Final = "transition_event"
 
 
-class _Inline(dict[str, Any]):
+class Inline(dict[str, Any]):
     """A map that takes one line of YAML."""
 
 
@@ -38,7 +38,7 @@ class _Dumper(yaml.SafeDumper):
     """Writes what is inline so, and in quotes what PyYAML would write raw and others read as a line break."""
 
 
-def _represent_map(dumper: yaml.SafeDumper, value: _Inline) -> yaml.Node:
+def _represent_map(dumper: yaml.SafeDumper, value: Inline) -> yaml.Node:
     return dumper.represent_mapping("tag:yaml.org,2002:map", value, flow_style=True)
 
 
@@ -51,7 +51,7 @@ def _represent_text(_dumper: yaml.SafeDumper, value: str) -> yaml.Node:
     return yaml.ScalarNode("tag:yaml.org,2002:str", value, style=style)
 
 
-_Dumper.add_representer(_Inline, _represent_map)
+_Dumper.add_representer(Inline, _represent_map)
 _Dumper.add_representer(_InlineList, _represent_list)
 _Dumper.add_representer(str, _represent_text)
 
@@ -78,9 +78,9 @@ def document_of(
     return document, omitted
 
 
-def as_yaml(document: dict[str, Any], omitted: Iterable[str]) -> str:
+def as_yaml(document: dict[str, Any], omitted: Iterable[str], title: str = "left out") -> str:
     """The document as YAML, with comments on what is left out."""
-    comments = "".join(f"# left out: {''.join(map(shown_character, reason))}\n" for reason in omitted)
+    comments = "".join(f"# {title}: {''.join(map(shown_character, reason))}\n" for reason in omitted)
     return comments + yaml.dump(document, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=100)
 
 
@@ -130,7 +130,7 @@ def _endpoints(
     return list(found.values())
 
 
-def _qos(qos: QosProfile) -> _Inline:
+def _qos(qos: QosProfile) -> Inline:
     """A profile without what it leaves open; a depth of 0 is none, so it is left open too."""
     history = "SYSTEM_DEFAULT" if qos.history == "KEEP_LAST" and qos.depth < 1 else qos.history
     profile: dict[str, Any] = {
@@ -144,7 +144,7 @@ def _qos(qos: QosProfile) -> _Inline:
         "liveliness": None if qos.liveliness == "AUTOMATIC" else qos.liveliness,
         "liveliness_lease_duration_ns": qos.liveliness_lease_duration_ns,
     }
-    return _Inline((key, value) for key, value in profile.items() if value)
+    return Inline((key, value) for key, value in profile.items() if value)
 
 
 def _parameters(seen: Iterable[RunningParameter] | None, omitted: list[str]) -> dict[str, dict[str, Any]]:

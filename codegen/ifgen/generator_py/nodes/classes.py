@@ -10,6 +10,7 @@ from ifgen.generator_py.nodes.endpoints import NodeTexts
 from ifgen.generator_py.nodes.imports import Imports
 from ifgen.generator_py.nodes.parameters import declared
 from ifgen.generator_py.text import are_long, docstring, quoted
+from ifgen.nodl.barriers import LIFECYCLE_NODE, NODE
 from ifgen.nodl.model import NodeDescription
 
 
@@ -71,6 +72,7 @@ def _module(node: NodeDescription, texts: NodeTexts, of_base: Imports, title: st
         constructor_docstring=options,
         attributes=tuple(_attributes(node, texts, of_base)),
         profiles=(),
+        publisher_method=_publisher_method(node),
         publishers=texts.publishers,
         subscriptions=texts.subscriptions,
         services=texts.services,
@@ -83,8 +85,17 @@ def _module(node: NodeDescription, texts: NodeTexts, of_base: Imports, title: st
 
 
 def _bases(node: NodeDescription, imports: Imports, *, is_abstract: bool) -> str:
-    node_class = imports("LifecycleNode" if node.style == "lifecycle" else "Node")
+    if node.base is None or node.base in {NODE, LIFECYCLE_NODE}:
+        node_class = imports("LifecycleNode" if node.style == "lifecycle" else "Node")
+    else:
+        node_class = imports.base(node.base)
     return f"{node_class}, {imports('ABC')}" if is_abstract else node_class
+
+
+def _publisher_method(node: NodeDescription) -> str:
+    if node.style == "lifecycle":
+        return LIFECYCLE_NODE.publisher_method
+    return node.base.publisher_method if node.base else NODE.publisher_method
 
 
 def _attributes(node: NodeDescription, texts: NodeTexts, imports: Imports) -> Iterator[tuple[str, str, str]]:

@@ -128,10 +128,11 @@ class NodeModule:
 
     `name` is a literal, `plain_name` is not. `imports` are the imports of this module; `bases` are the base
     classes, `attributes` are its (name, annotation, docstring), `profiles` the constants of the QoS profiles
-    with the calls that make them. `needs_group` is true if some callbacks run beside others, `in_threads` if
-    `main` needs more than one thread, and `sends_once` if a publisher is `once`. `has_long_names` is true if
-    names are too long for the line breaks of `ruff format`. `ways_to_run` is for the user's module.
-    `on_type_mismatch` is a literal, or empty.
+    with the calls that make them, `publisher_method` the method of the base that makes publishers.
+    `needs_group` is true if some callbacks run beside others, `in_threads` if `main` needs more than one
+    thread, and `sends_once` if a publisher is `once`. `has_long_names` is true if names are too long for the
+    line breaks of `ruff format`. `ways_to_run` is for the user's module. `on_type_mismatch` is a literal, or
+    empty.
     """
 
     package: str
@@ -153,6 +154,7 @@ class NodeModule:
     constructor_docstring: str
     attributes: tuple[tuple[str, str, str], ...]
     profiles: tuple[tuple[str, str], ...]
+    publisher_method: str
     publishers: tuple[PublisherText, ...]
     subscriptions: tuple[SubscriptionText, ...]
     services: tuple[ServiceText, ...]

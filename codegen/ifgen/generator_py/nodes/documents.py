@@ -10,6 +10,7 @@ from ifgen.generator_py.nodes.parameters import constraints, declared
 from ifgen.nodl.model import (
     Category,
     Endpoint,
+    Interface,
     NodeDescription,
     Parameter,
     ParameterValue,
@@ -24,15 +25,26 @@ _WORDS: Final = frozenset({"y", "n", "yes", "no", "on", "off", "true", "false", 
 
 
 def description_lines(node: NodeDescription) -> Iterator[str]:
-    """The document after `nodl_version`, for the ament index: with its includes, without `codegen`."""
+    """The document after `nodl_version`, for the ament index: what it is composed of in one place.
+
+    What it says to tools other than ifgen stays, and so do includes of documents whose code exists: whoever
+    includes this one generates nothing for those.
+    """
     if node.description:
         yield f"description: {quoted(node.description)}"
-    if node.parameters:
+    if node.codegen:
+        yield "codegen:"
+        yield from (f"  {_key(tool)}: {options}" for tool, options in node.codegen)
+    if node.references:
+        yield "include:"
+        yield from (f"  - ref: {reference}" for reference in node.references)
+    own = Interface(node.parameters, node.endpoints) + node.reserved
+    if own.parameters:
         yield "parameters:"
-        for parameter in node.parameters:
+        for parameter in own.parameters:
             yield from _parameter(parameter)
     for category in Category:
-        endpoints = [endpoint for endpoint in node.endpoints if endpoint.category == category]
+        endpoints = [endpoint for endpoint in own.endpoints if endpoint.category == category]
         if endpoints:
             yield f"{category.value}:"
             for endpoint in endpoints:

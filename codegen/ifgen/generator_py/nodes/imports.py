@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Final
 
 from ifgen.generator_py.imports import IN_NODES, Names
-from ifgen.nodl.model import NodeDescription
+from ifgen.nodl.model import BaseClass, NodeDescription
 
 TAKEN: Final = {
     *IN_NODES,
@@ -37,6 +37,12 @@ class Imports(Names):
         package, folder, name = type_name.split("/")
         self.add(f"{package}.{folder}", name, self._references[type_name])
         return self._references[type_name]
+
+    def base(self, base: BaseClass) -> str:
+        """The class to derive from, with its module's name in front: others may share its own."""
+        reference = f"{base.module.replace('.', '_')}_{base.name}"
+        self.add(base.module, base.name, reference)
+        return reference
 
     def own(self, module: str, name: str) -> str:
         """A name of another module of the package."""

@@ -1,0 +1,74 @@
+"""The verdict on one document, as `ros2 nodl validate` gives it: what only ifgen asks for is a warning.
+
+ifgen needs more to generate code, such as interfaces that exist, and gives errors for it in `ifgen check`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+from ifgen.diagnostics import Diagnostic
+from ifgen.nodl.load import Loaded, load_document
+from ifgen.reading.search_path import SearchPath
+
+OURS: Final = frozenset(
+    {
+        *("unknown-package", "unknown-type", "wrong-interface-kind", "two-types"),
+        *(
+            "unfit-validator",
+            "mixed-bounds",
+            "empty-bounds",
+            "wrong-default",
+            "rejected-default",
+            "missing-function",
+        ),
+        *("duplicate-timer", "unknown-publisher", "unknown-parameter", "invalid-option", "validator-module"),
+        *("invalid-node-name", "two-bases", "invalid-codegen"),
+    }
+)
+"""Rules that NoDL does not have. docs/nodl.md explains them."""
+
+# What ifgen reads all the same.
+_ONLY_THEIRS: Final = frozenset({"number-as-text"})
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """A document, None where it cannot be read, and what is wrong with it."""
+
+    loaded: Loaded | None
+    errors: tuple[Diagnostic, ...]
+    warnings: tuple[Diagnostic, ...]
+
+
+def verdict(path: Path, search: SearchPath, *, follow: bool = True, strict: bool = False) -> Verdict:
+    """The mistakes in a document and in those that it includes.
+
+    Includes are only looked at if they are to be followed, and what ifgen asks for beyond NoDL gives errors
+    only if it is to be `strict`.
+    """
+    loaded, found = load_document(path, search)
+    if not follow:
+        found = [each for each in found if not _is_about_others(each, path)]
+    errors = tuple(each for each in found if _is_error(each, strict=strict))
+    return Verdict(loaded, errors, tuple(_as_warnings(each for each in found if each not in errors)))
+
+
+def _is_error(diagnostic: Diagnostic, *, strict: bool) -> bool:
+    if diagnostic.rule in _ONLY_THEIRS:
+        return True
+    return diagnostic.severity == "error" and (strict or diagnostic.rule not in OURS)
+
+
+def _as_warnings(found: Iterable[Diagnostic]) -> Iterable[Diagnostic]:
+    return (replace(each, severity="warning") for each in found)
+
+
+def _is_about_others(diagnostic: Diagnostic, path: Path) -> bool:
+    """Whether it takes other documents to see this mistake."""
+    labels = [*([diagnostic.primary] if diagnostic.primary else ()), *diagnostic.secondary]
+    elsewhere = any(label.span.source.path.absolute() != path.absolute() for label in labels)
+    return elsewhere or diagnostic.rule in {"unknown-include", "included-twice"}

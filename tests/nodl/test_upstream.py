@@ -1,0 +1,347 @@
+"""Documents that the ROS project's NoDL 2 accepts and refuses, and what they say once they are merged."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+from ifgen import generate
+from ifgen.nodl.load import Loaded
+from ifgen.nodl.names import expanded
+from ifgen.nodl.verdict import Verdict, verdict
+from ifgen.reading.search_path import SearchPath
+
+QOS = "qos: {history: KEEP_LAST, depth: 1, reliability: RELIABLE}"
+TOPIC = f"{{name: /a, type: std_msgs/msg/String, {QOS}}}"
+
+
+def topic(name: str = "/a", type_: str = "std_msgs/msg/String", qos: str = QOS) -> str:
+    return f"publishers: [{{name: '{name}', type: {type_}, {qos}}}]"
+
+
+def qos(text: str) -> str:
+    return topic(qos=f"qos: {{{text}}}")
+
+
+def parameter(text: str, name: str = "p") -> str:
+    return f"parameters: {{{name}: {{{text}}}}}"
+
+
+def checked(type_: str, text: str) -> str:
+    return parameter(f"type: {type_}, validation: {{{text}}}")
+
+
+ACCEPTED = [
+    "",
+    "description: Talks.",
+    "codegen: {}",
+    "codegen: {cpp: {}, rust: {anything: [1, {a: b}]}}",
+    "codegen: {cpp: {role: base_class}}",
+    "codegen: {cpp: {role: NODE, namespace: demo}}",
+    "codegen: {python: {role: NO_GENERATE}}",
+    "include: []",
+    "parameters: {}",
+    "publishers: []",
+    *(parameter(f"type: {name}") for name in ("bool", "int", "double", "string", "none")),
+    *(parameter(f"type: {name}_array") for name in ("bool", "int", "double", "string", "byte")),
+    *(parameter(f"type: {name}_fixed_4") for name in ("string", "int_array", "double_array", "string_array")),
+    parameter("type: int, default_value: 5, description: d, read_only: true, additional_constraints: even"),
+    parameter("type: double, default_value: .nan"),
+    parameter("type: byte_array, default_value: [0, 255]"),
+    parameter("type: string", "a.b.c"),
+    parameter("type: bool, default_value: false", "use_sim_time"),
+    *(
+        checked("int", text)
+        for text in ("bounds: [0, 5]", "bounds<>: [0, 5]", "lt: 5", "lt: [5]", "gt<>: [0]")
+    ),
+    *(checked("double", text) for text in ("lt_eq: 5", "gt_eq: [0.5]", "one_of: [[1.0, 2.0]]")),
+    *(
+        checked("string", text)
+        for text in ("not_empty:", "not_empty<>: []", "size_gt: 1", "one_of: [[a, b]]")
+    ),
+    *(checked("int_array", text) for text in ("unique:", "element_bounds: [0, 1]", "subset_of: [[1, 2]]")),
+    *(checked("int_array", text) for text in ("fixed_size: 3", "lower_element_bounds: 0", "size_lt<>: [9]")),
+    *(checked("int", text) for text in ("a::b:", "a::b: 5", "a::b: [1, x]", "a::b::c: true", "a::b: text")),
+    *(topic(name) for name in ("/a", "a", "A", "~/a", "a/b", "/a/b", "a_", "a_b/C1")),
+    *(topic(type_=name) for name in ("std_msgs/String", "nobody_msgs/msg/Nothing", "Caps_1/msg/A1")),
+    "subscriptions: [" + TOPIC + "]",
+    "publishers: [" + TOPIC + "]\nsubscriptions: [" + TOPIC + "]",
+    *(qos(f"history: {word}, reliability: RELIABLE") for word in ("KEEP_ALL", "SYSTEM_DEFAULT")),
+    qos("history: KEEP_ALL, depth: 3, reliability: RELIABLE"),
+    *(
+        qos(f"history: KEEP_ALL, reliability: {word}")
+        for word in ("RELIABLE", "BEST_EFFORT", "SYSTEM_DEFAULT", "BEST_AVAILABLE")
+    ),
+    *(
+        qos(f"history: KEEP_ALL, reliability: RELIABLE, {text}")
+        for text in (
+            "durability: TRANSIENT_LOCAL",
+            "durability: VOLATILE",
+            "durability: BEST_AVAILABLE",
+            "liveliness: AUTOMATIC",
+            "liveliness: MANUAL_BY_TOPIC",
+            "deadline_ns: 0",
+            "deadline_ns: 5",
+            "lifespan_ns: 9000000000",
+            "liveliness_lease_duration_ns: 1",
+        )
+    ),
+    "service_servers: [{name: a, type: std_srvs/srv/Trigger}]",
+    f"service_clients: [{{name: a, type: std_srvs/Trigger, {QOS}, description: d}}]",
+    "action_servers: [{name: a, type: example_interfaces/action/Fibonacci}]",
+    "action_clients: [{name: a, type: example_interfaces/Fibonacci, description: d}]",
+    f"publishers: [{{name: a, type: x_msgs/A, {QOS}}}]\nservice_servers: [{{name: a, type: x_msgs/srv/B}}]",
+    "include: [{ref: 'nodl://nodl_common_interfaces/node'}]",
+    "include: [{ref: 'nodl://nodl_common_interfaces/lifecycle_node'}]",
+    "include: [{ref: 'nodl://rclcpp/node'}]",
+    "include: [{ref: 'nodl://rclpy/node'}]",
+    "include: [{ref: 'nodl://rclpy/lifecycle_node'}]",
+    "include: [{ref: 'nodl://rclcpp_lifecycle/lifecycle_node'}]",
+    "include: [{ref: 'local://part.nodl.yaml'}]",
+    "include: [{ref: 'local://sub/../part.nodl.yaml'}]",
+]
+
+REFUSED = [
+    "base: x",
+    "fragments: []",
+    "name: talker",
+    "x-more: 1",
+    "description: 5",
+    "description:",
+    "codegen: text",
+    "codegen: {cpp: text}",
+    "codegen: {cpp: }",
+    "include: text",
+    "include: [text]",
+    "include: [{}]",
+    "include: [{ref: 'local://part.nodl.yaml', as: x}]",
+    *(
+        f"include: [{{ref: {ref!r}}}]"
+        for ref in (
+            *("", "/abs/path", "a/b.yaml", "./a", "nodl:///x", "nodl://", "://x", "nodl:/x", "has space://x"),
+            *(
+                "Nodl://a/b",
+                "local://a b",
+                "nodl://a",
+                "test://x",
+                "local://nobody.yaml",
+                "nodl://nobody/none",
+            ),
+        )
+    ),
+    "parameters: []",
+    "parameters: {p: int}",
+    parameter("description: x"),
+    parameter("type: float"),
+    parameter("type: bool_array_fixed_3"),
+    parameter("type: string_fixed_0"),
+    parameter("type: string_fixed_04"),
+    parameter("type: int, read_only: 1"),
+    parameter("type: int, unit: m"),
+    parameter("type: byte_array, default_value: [-1]"),
+    parameter("type: byte_array, default_value: [256]"),
+    parameter("type: int", "a..b"),
+    parameter("type: int", "'.a'"),
+    "parameters: {a: {type: int}, a.b: {type: int}}",
+    *(checked("int", text) for text in ("bounds: [0]", "bounds: 5", "lt: x", "lt: [1, 2]", "maximum: 5")),
+    *(checked("int", text) for text in ("one_of: [1, 2]", "one_of: [[]]", "::b: 5", "a::b: {x: 1}")),
+    checked("double", "gt: 1e3"),
+    *(checked("string", text) for text in ("size_gt: -1", "size_gt: 1.5", "not_empty: 5")),
+    *(topic(name) for name in ("", "1a", "a/", "/", "~", "a-b", "a b", "/a/{x}")),
+    *(
+        topic(type_=name)
+        for name in ("String", "std_msgs//String", "std_msgs/msg/string", "std_msgs/idl/String")
+    ),
+    *(topic(type_=name) for name in ("std_msgs/msg/A_B", "std_msgs/msg/String/x", "1a/msg/A")),
+    "publishers: {a: b}",
+    f"publishers: [{{name: a, type: std_msgs/msg/String, {QOS}, unit: m}}]",
+    "publishers: [{name: a, type: std_msgs/msg/String}]",
+    f"publishers: [{{type: std_msgs/msg/String, {QOS}}}]",
+    f"publishers: [{{name: a, {QOS}}}]",
+    f"publishers: [{TOPIC}, {TOPIC}]",
+    qos("history: KEEP_LAST, reliability: RELIABLE"),
+    qos("history: KEEP_LAST, depth: 0, reliability: RELIABLE"),
+    qos("history: BEST_AVAILABLE, reliability: RELIABLE"),
+    qos("history: keep_all, reliability: RELIABLE"),
+    qos("reliability: RELIABLE"),
+    qos("history: KEEP_ALL"),
+    qos("history: KEEP_ALL, reliability: UNKNOWN"),
+    qos("history: KEEP_ALL, reliability: RELIABLE, deadline_ns: -1"),
+    qos("history: KEEP_ALL, reliability: RELIABLE, deadline_ns: 1.5"),
+    qos("history: KEEP_ALL, reliability: RELIABLE, deadline: 1"),
+    "service_servers: [{name: a}]",
+    f"action_servers: [{{name: a, type: example_interfaces/action/Fibonacci, {QOS}}}]",
+    # The part declares /part as a publisher, and the parameter `shared`.
+    f"publishers: [{{name: /part, type: std_msgs/msg/String, {QOS}}}]\ninclude: [{{ref: 'local://part.nodl.yaml'}}]",
+    "parameters: {shared: {type: int}}\ninclude: [{ref: 'local://part.nodl.yaml'}]",
+    "include: [{ref: 'local://part.nodl.yaml'}, {ref: 'local://part.nodl.yaml'}]",
+    "include: [{ref: 'local://talker.nodl.yaml'}]",
+    "include: [{ref: 'local://loop.nodl.yaml'}]",
+    "include: [{ref: 'local://one.nodl.yaml'}, {ref: 'local://two.nodl.yaml'}]",
+    "include: [{ref: 'nodl://rclpy/node'}, {ref: 'nodl://rclcpp/node'}]",
+]
+
+OTHERS = {
+    "part": f"parameters: {{shared: {{type: int}}}}\npublishers: [{{name: /part, type: std_msgs/String, {QOS}}}]",
+    "one": "include: [{ref: 'local://part.nodl.yaml'}]",
+    "two": "include: [{ref: 'local://part.nodl.yaml'}]",
+    "loop": "include: [{ref: 'local://talker.nodl.yaml'}]",
+}
+SEARCH = SearchPath()
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the documents that others include."""
+    root = tmp_path_factory.mktemp("demo") / "demo" / "nodl"
+    (root / "sub").mkdir(parents=True)
+    for name, text in OTHERS.items():
+        (root / f"{name}.nodl.yaml").write_text(f"nodl_version: 2\n{text}\n")
+    return root
+
+
+def judge(folder: Path, text: str, *, follow: bool = True) -> Verdict:
+    path = folder / "talker.nodl.yaml"
+    path.write_text(text)
+    return verdict(path, SEARCH, follow=follow)
+
+
+def document(text: str) -> str:
+    return f"nodl_version: 2\n{text}\n"
+
+
+@pytest.mark.parametrize("text", ACCEPTED)
+def test_accepted(folder: Path, text: str) -> None:
+    found = judge(folder, document(text))
+    assert [each.message for each in found.errors] == []
+    assert found.loaded is not None
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_refused(folder: Path, text: str) -> None:
+    assert judge(folder, document(text)).errors
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "nodl_version: 1\n",
+        "nodl_version: '2'\n",
+        "description: a\n",
+        "[]\n",
+        "text\n",
+        "nodl_version: [\n",
+    ],
+)
+def test_no_document(folder: Path, text: str) -> None:
+    assert judge(folder, text).errors
+
+
+def test_without_following(folder: Path) -> None:
+    """As `--no-resolve` of `ros2 nodl`: what is not installed yet may be included."""
+    missing = document("include: [{ref: 'nodl://nobody/none'}, {ref: 'test://x'}]")
+    assert judge(folder, missing).errors
+    assert not judge(folder, missing, follow=False).errors
+    assert judge(folder, document("include: [{ref: nonsense}]"), follow=False).errors
+
+
+def merged(folder: Path, text: str) -> Loaded:
+    found = judge(folder, document(text))
+    assert found.loaded is not None
+    assert not found.errors
+    return found.loaded
+
+
+def test_the_root_comes_first_then_breadth_first(folder: Path) -> None:
+    whole = merged(folder, f"{topic('/root')}\ninclude: [{{ref: 'local://one.nodl.yaml'}}]").whole
+    assert [endpoint.name for endpoint in whole.endpoints] == ["/root", "/part"]
+    assert [parameter.name for parameter in whole.parameters] == ["shared"]
+
+
+LIFECYCLE = {
+    *(
+        "change_state",
+        "get_state",
+        "get_available_states",
+        "get_available_transitions",
+        "get_transition_graph",
+    ),
+}
+
+
+@pytest.mark.parametrize("package", ["nodl_common_interfaces", "rclpy"])
+def test_what_is_behind_a_barrier_is_inherited(folder: Path, package: str) -> None:
+    loaded = merged(folder, f"{topic('/own')}\ninclude: [{{ref: 'nodl://{package}/lifecycle_node'}}]")
+    node = loaded.description
+    assert [endpoint.name for endpoint in node.endpoints] == ["/own"]
+    assert node.parameters == ()
+    assert node.style == "lifecycle"
+    assert node.references == (f"nodl://{package}/lifecycle_node",)
+    names = {expanded(endpoint.name, "n") for endpoint in node.inherited.endpoints}
+    assert {f"/n/{name}" for name in LIFECYCLE} < names
+    assert {"/rosout", "/parameter_events", "/n/list_parameters", "/n/transition_event"} < names
+    assert [parameter.name for parameter in node.inherited.parameters] == ["use_sim_time"]
+    assert len(loaded.whole.endpoints) == 15
+
+
+def test_what_rclpy_makes_is_not_generated(folder: Path) -> None:
+    """As in a base document without `codegen`, which earlier versions had."""
+    service = "service_servers: [{name: ~/get_parameters, type: rcl_interfaces/srv/GetParameters}]"
+    found = judge(folder, document(f"{topic('/rosout', 'rcl_interfaces/msg/Log')}\n{service}"))
+    assert found.loaded is not None
+    assert found.loaded.description.endpoints == ()
+    assert len(found.loaded.description.reserved.endpoints) == 2
+    assert [each.rule for each in found.warnings] == ["reserved-endpoint", "reserved-endpoint"]
+
+
+def test_another_base_class(folder: Path) -> None:
+    base = "codegen: {python: {role: BASE_CLASS, module: robot.base, class: RobotNode}}"
+    (folder / "robot.nodl.yaml").write_text(document(f"{base}\n{topic('/status')}"))
+    node = merged(folder, f"{topic('/own')}\ninclude: [{{ref: 'local://robot.nodl.yaml'}}]").description
+    assert node.base is not None
+    assert (node.base.module, node.base.name, node.base.publisher_method) == (
+        *("robot.base", "RobotNode", "create_publisher"),
+    )
+    assert [endpoint.name for endpoint in node.inherited.endpoints] == ["/status"]
+    assert node.references == ("nodl://demo/robot",)
+    both = document("include: [{ref: 'local://robot.nodl.yaml'}, {ref: 'nodl://rclpy/node'}]")
+    assert [each.rule for each in judge(folder, both).warnings] == ["two-bases"]
+
+
+def test_a_base_of_cpp_is_the_same_base_of_python(folder: Path) -> None:
+    """As nodl_common_interfaces 2.0.3 registers it."""
+    base = "codegen: {cpp: {role: BASE_CLASS, class: 'rclcpp::Node', header: rclcpp/rclcpp.hpp}}"
+    (folder / "cpp.nodl.yaml").write_text(document(f"{base}\n{topic('/status')}"))
+    node = merged(folder, "include: [{ref: 'local://cpp.nodl.yaml'}]").description
+    assert node.endpoints == ()
+
+
+def test_there_are_enough_documents() -> None:
+    assert len(ACCEPTED) + len(REFUSED) >= 120
+
+
+def test_the_installed_document_keeps_includes_and_codegen(tmp_path: Path) -> None:
+    """Whoever includes it generates nothing for what is behind its barriers."""
+    source = tmp_path / "in/demo/nodl"
+    source.mkdir(parents=True)
+    (source / "tf.nodl.yaml").write_text(
+        document(f"codegen: {{python: {{role: NO_GENERATE}}}}\n{topic('/tf')}")
+    )
+    (source / "part.nodl.yaml").write_text(document(topic("/part")))
+    refs = ("nodl://rclpy/lifecycle_node", "local://tf.nodl.yaml", "local://part.nodl.yaml")
+    includes = "".join(f"  - ref: {ref}\n" for ref in refs)
+    codegen = "codegen: {cpp: {role: NODE, namespace: demo}}"
+    (source / "talker.nodl.yaml").write_text(document(f"{codegen}\n{topic('~/out')}\ninclude:\n{includes}"))
+    generate(tmp_path / "in", output=tmp_path / "out")
+    installed = yaml.safe_load((tmp_path / "out/demo/resource/demo__talker").read_text())
+    assert installed["codegen"] == {"cpp": {"role": "NODE", "namespace": "demo"}}
+    assert installed["include"] == [{"ref": "nodl://rclpy/lifecycle_node"}, {"ref": "nodl://demo/tf"}]
+    assert [endpoint["name"] for endpoint in installed["publishers"]] == ["~/out", "/part"]
+    part = yaml.safe_load((tmp_path / "out/demo/resource/demo__tf").read_text())
+    assert part["codegen"] == {"python": {"role": "NO_GENERATE"}}
+    code = (tmp_path / "out/demo/demo/_talker_base.py").read_text()
+    assert "class TalkerBase(LifecycleNode):" in code
+    assert "create_lifecycle_publisher" in code
+    assert "tf" not in code

@@ -1,0 +1,17 @@
+"""Runs a program, looks at its only node, and keeps what was seen: `observe.py TRANSPORT PROGRAM FILE`."""
+
+from __future__ import annotations
+
+import pickle
+import sys
+from pathlib import Path
+
+from ifgen_tools.beside import session_beside
+from ifgen_tools.nodl.conformance import side_of_node
+from ifgen_tools.nodl.parameters import parameters_of
+
+transport, program, file = sys.argv[1:]
+with session_beside([[program]], transport) as session:  # type: ignore[arg-type]
+    [node] = session.graph().visible().nodes
+    side = side_of_node(node, session.graph().endpoints, parameters_of(session, node))
+Path(file).write_bytes(pickle.dumps(side))
