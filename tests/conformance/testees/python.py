@@ -30,6 +30,7 @@ from ifgen.definition.types import (
 from ifgen.pipeline.stages import generate, load
 
 INTERFACES: Final = Path(__file__).resolve().parents[1] / "interfaces"
+TUNABLES: Final = "glibc.malloc.tcache_count=0:glibc.malloc.perturb=255"  # memory that is not initialised is 0
 FLOATS: Final = {"float": "f", "double": "d"}
 DTYPES: Final = {"boolean": "bool", "octet": "uint8", "char": "uint8", "float": "float32", "double": "float64"}
 
@@ -255,11 +256,14 @@ class Rosbags(Library):
 
     def __init__(self, registry: Registry) -> None:
         super().__init__(registry)
-        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+        from rosbags.typesys import Stores, TypesysError, get_types_from_msg, get_typestore
 
         self.store = get_typestore(Stores.EMPTY)
         for type_name, text in definitions(registry):
-            self.store.register(get_types_from_msg(text, type_name))
+            try:
+                self.store.register(get_types_from_msg(text, type_name))
+            except TypesysError:
+                continue  # a form that it does not know; the types that need it fail when they are used
 
     def definition(self, type_name: str) -> Message:
         if type_name not in self.store.types:
@@ -416,6 +420,9 @@ LIBRARIES: Final = {"ours": Ours, "rclpy": Rclpy, "rosbags": Rosbags, "mcap": Mc
 
 def main() -> None:
     """Answer until the input ends. What a library prints goes to stderr."""
+    if sys.argv[1] == "rclpy" and os.environ.get("GLIBC_TUNABLES") != TUNABLES:
+        os.environ["GLIBC_TUNABLES"] = TUNABLES
+        os.execv(sys.executable, [sys.executable, *sys.argv])
     output = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)
     library = LIBRARIES[sys.argv[1]](load(resources.bundled_interfaces(), INTERFACES))
