@@ -43,6 +43,7 @@ export interface MessageType<T> {
 }
 
 const SMALL = 1 << 16;
+const EMPTY = new ArrayBuffer(0);
 const SURROGATE = /\p{Surrogate}/u;
 const encoder = new TextEncoder();
 const decoder = new TextDecoder("utf-8", { ignoreBOM: true });
@@ -271,6 +272,11 @@ export function exactly(a: { readonly length: number }, n: number): number {
   if (a.length !== n) throw new EncodeError("");
   return n;
 }
+/** An array, if it has the right number of elements. */
+export function sized<T extends { readonly length: number }>(a: T, n: number): T {
+  if (a.length !== n) throw new EncodeError("");
+  return a;
+}
 export function atMost(a: { readonly length: number }, n: number): number {
   if (!(a.length <= n)) throw new EncodeError("");
   return a.length;
@@ -439,6 +445,7 @@ export class Reader {
   }
 
   u16s(o: number, n: number): Uint16Array {
+    if (n === 0) return new Uint16Array(EMPTY);
     if (this.native) return new Uint16Array(this.at(o, 2 * n, 1), this.start, n);
     const a = new Uint16Array(n);
     for (let i = 0; i < n; i++) a[i] = this.view.getUint16(o + 2 * i, this.le);
@@ -446,6 +453,7 @@ export class Reader {
   }
 
   i16s(o: number, n: number): Int16Array {
+    if (n === 0) return new Int16Array(EMPTY);
     if (this.native) return new Int16Array(this.at(o, 2 * n, 1), this.start, n);
     const a = new Int16Array(n);
     for (let i = 0; i < n; i++) a[i] = this.view.getInt16(o + 2 * i, this.le);
@@ -453,6 +461,7 @@ export class Reader {
   }
 
   u32s(o: number, n: number): Uint32Array {
+    if (n === 0) return new Uint32Array(EMPTY);
     if (this.native) return new Uint32Array(this.at(o, 4 * n, 3), this.start, n);
     const a = new Uint32Array(n);
     for (let i = 0; i < n; i++) a[i] = this.view.getUint32(o + 4 * i, this.le);
@@ -460,6 +469,7 @@ export class Reader {
   }
 
   i32s(o: number, n: number): Int32Array {
+    if (n === 0) return new Int32Array(EMPTY);
     if (this.native) return new Int32Array(this.at(o, 4 * n, 3), this.start, n);
     const a = new Int32Array(n);
     for (let i = 0; i < n; i++) a[i] = this.view.getInt32(o + 4 * i, this.le);
@@ -467,6 +477,7 @@ export class Reader {
   }
 
   f32s(o: number, n: number): Float32Array {
+    if (n === 0) return new Float32Array(EMPTY);
     if (this.native) return new Float32Array(this.at(o, 4 * n, 3), this.start, n);
     const a = new Float32Array(n);
     for (let i = 0; i < n; i++) a[i] = this.view.getFloat32(o + 4 * i, this.le);
@@ -474,6 +485,7 @@ export class Reader {
   }
 
   f64s(o: number, n: number): Float64Array {
+    if (n === 0) return new Float64Array(EMPTY);
     if (this.native) return new Float64Array(this.at(o, 8 * n, 7), this.start, n);
     const a = new Float64Array(n);
     for (let i = 0; i < n; i++) a[i] = this.view.getFloat64(o + 8 * i, this.le);
@@ -481,6 +493,7 @@ export class Reader {
   }
 
   u64s(o: number, n: number): BigUint64Array {
+    if (n === 0) return new BigUint64Array(EMPTY);
     if (this.native) return new BigUint64Array(this.at(o, 8 * n, 7), this.start, n);
     const a = new BigUint64Array(n);
     for (let i = 0; i < n; i++) a[i] = this.view.getBigUint64(o + 8 * i, this.le);
@@ -488,6 +501,7 @@ export class Reader {
   }
 
   i64s(o: number, n: number): BigInt64Array {
+    if (n === 0) return new BigInt64Array(EMPTY);
     if (this.native) return new BigInt64Array(this.at(o, 8 * n, 7), this.start, n);
     const a = new BigInt64Array(n);
     for (let i = 0; i < n; i++) a[i] = this.view.getBigInt64(o + 8 * i, this.le);

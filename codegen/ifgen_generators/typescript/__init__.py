@@ -1,0 +1,1 @@
+"""TypeScript from interfaces: ES modules without dependencies, which read and write CDR."""
