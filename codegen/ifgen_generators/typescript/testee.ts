@@ -44,7 +44,7 @@ function text(type: string, value: any): string {
 function* leaves(type: MessageType<any>, message: any, path: string): Generator<string> {
   for (const field of type.fields) {
     const value = message[field.name];
-    const at = path + field.name;
+    const at = path + field.name.replace(/_$/, ""); // which a field's name in ROS cannot end with
     if (field.array === undefined) yield* leaf(field, value, at);
     else {
       if (field.array !== "fixed") yield `${at}#=${value.length}`;
