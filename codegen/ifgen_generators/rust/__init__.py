@@ -1,0 +1,1 @@
+"""Rust from interfaces: a crate without dependencies and unsafe code, which reads and writes CDR."""
