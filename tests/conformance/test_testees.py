@@ -12,8 +12,18 @@ from .support import FOXGLOVE, HERE, PYTHON, node_modules, run_suite, write_defi
 
 
 def test_the_codec_passes_some_of_each_group() -> None:
-    patterns = ("alignment/Mixed/*", "big/*", "bounds/*", "float/*", "text/*", "hostile/std_msgs/*", "hash/test_msgs/*")
-    code, output = run_suite([*PYTHON, "ours"], *(word for pattern in patterns for word in ("--only", pattern)))
+    patterns = (
+        "alignment/Mixed/*",
+        "big/*",
+        "bounds/*",
+        "float/*",
+        "text/*",
+        "hostile/std_msgs/*",
+        "hash/test_msgs/*",
+    )
+    code, output = run_suite(
+        [*PYTHON, "ours"], *(word for pattern in patterns for word in ("--only", pattern))
+    )
     assert code == 0, output
 
 

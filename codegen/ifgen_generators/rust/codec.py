@@ -7,6 +7,8 @@ from typing import Final
 
 from ifgen.model import Field, Item, Message, Step, safe_name
 
+from ifgen_generators.shared import smallest_element
+
 TYPES: Final[Mapping[str, str]] = {
     **{"bool": "bool", "byte": "u8", "char": "u8", "float32": "f32", "float64": "f64"},
     **{f"{sign}int{bits}": f"{'u' if sign else 'i'}{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)},
@@ -17,19 +19,6 @@ MOST: Final = "usize::MAX"
 def key(name: str) -> str:
     """The name of a field in Rust."""
     return safe_name(name, "rust")
-
-
-def smallest(message: Message, types: Mapping[str, Message]) -> int:
-    """The bytes of an element of a sequence, at least: those of its values without any padding."""
-    size = 0
-    for each in message.fields:
-        kind = each.type
-        if kind.array is not None and kind.array.kind != "fixed":
-            size += 4
-            continue
-        one = smallest(types[kind.message.type_name], types) if kind.message else (kind.bits or 32) // 8
-        size += one * (kind.size or 1)
-    return size or 1
 
 
 def borrows(message: Message, types: Mapping[str, Message]) -> bool:
@@ -258,7 +247,7 @@ class Codec:
         if step.kind == "texts":
             size = 4
         else:
-            size = smallest(self._types[step.type_name or ""], self._types)
+            size = smallest_element(self._types[step.type_name or ""], self._types)
         align = f"r.take({step.element_align}, 0)?;"
         if step.count is not None:
             if step.kind == "repeat" and step.element_align > 1:

@@ -8,6 +8,8 @@ from typing import Final
 
 from ifgen.model import Field, Item, Message, Primitive, Step, safe_name
 
+from ifgen_generators.shared import smallest_element
+
 ARRAYS: Final[Mapping[str, tuple[str, str]]] = {
     "byte": ("u8", "Uint8"),
     "char": ("u8", "Uint8"),
@@ -132,7 +134,9 @@ class WriteFunction:
     def _checked(self, primitive: Primitive, value: str) -> str:
         if self._style.is_big(primitive):
             value = f"BigInt({value})"
-        check = {"bool": "bool", "float32": "float", "float64": "float"}.get(primitive) or ARRAYS[primitive][0]
+        check = {"bool": "bool", "float32": "float", "float64": "float"}.get(primitive) or ARRAYS[primitive][
+            0
+        ]
         return f"cdr.{check}({value})"
 
     def _text(self, step: Step, value: str) -> str:
@@ -184,19 +188,6 @@ def _gaps(step: Step) -> Iterator[int]:
         end = item.offset + item.size * (1 if item.count is None else item.count)
 
 
-def smallest(message: Message, types: Mapping[str, Message]) -> int:
-    """The bytes of an element of a sequence, at least: those of its values without any padding."""
-    size = 0
-    for each in message.fields:
-        kind = each.type
-        if kind.array is not None and kind.array.kind != "fixed":
-            size += 4
-            continue
-        one = smallest(types[kind.message.type_name], types) if kind.message else (kind.bits or 32) // 8
-        size += one * (kind.size or 1)
-    return size or 1
-
-
 class ReadFunction:
     """The statements that read a message from a reader `r`."""
 
@@ -231,7 +222,9 @@ class ReadFunction:
                     values[step.path] = self._many(step)
         return self._literal(message.fields, (), values)
 
-    def _literal(self, fields: Sequence[Field], path: tuple[str, ...], values: Mapping[tuple[str, ...], str]) -> str:
+    def _literal(
+        self, fields: Sequence[Field], path: tuple[str, ...], values: Mapping[tuple[str, ...], str]
+    ) -> str:
         parts = []
         for each in fields:
             inner = (*path, each.name)
@@ -286,7 +279,10 @@ class ReadFunction:
             kind, size = "string", 4
         else:
             assert step.type_name is not None
-            kind, size = self._functions[f"type {step.type_name}"], smallest(self._types[step.type_name], self._types)
+            kind, size = (
+                self._functions[f"type {step.type_name}"],
+                smallest_element(self._types[step.type_name], self._types),
+            )
         count = str(step.count) if step.count is not None else self._count(step, size)
         array, index = self._named("a", f"[] as {kind}[]"), self._out.name("i")
         if step.kind == "repeat" and step.element_align > 1:

@@ -11,11 +11,11 @@ from ifgen.definition.types import (
     COLLECTIONS,
     Array,
     BasicType,
+    BoundedWString,
     FieldType,
     NamespacedType,
     StringType,
     UnboundedWString,
-    BoundedWString,
     ValueType,
 )
 

@@ -30,9 +30,17 @@ from ifgen.definition.types import (
 from ifgen.pipeline.stages import generate, load
 
 INTERFACES: Final = Path(__file__).resolve().parents[1] / "interfaces"
-TUNABLES: Final = "glibc.malloc.tcache_count=0:glibc.malloc.perturb=255"  # memory that is not initialised is 0
+TUNABLES: Final = (
+    "glibc.malloc.tcache_count=0:glibc.malloc.perturb=255"  # memory that is not initialised is 0
+)
 FLOATS: Final = {"float": "f", "double": "d"}
-DTYPES: Final = {"boolean": "bool", "octet": "uint8", "char": "uint8", "float": "float32", "double": "float64"}
+DTYPES: Final = {
+    "boolean": "bool",
+    "octet": "uint8",
+    "char": "uint8",
+    "float": "float32",
+    "double": "float64",
+}
 
 
 class Skip(Exception):
@@ -230,7 +238,9 @@ def size_of(library: Library, type_name: str, message: Any, at: int = 4) -> int:
             return size_of(library, type_.type_name, item, at)
         if isinstance(type_, BasicType):
             digits = type_.typename.lstrip("uint")
-            size = {"float": 4, "double": 8}.get(type_.typename) or (int(digits) // 8 if digits.isdigit() else 1)
+            size = {"float": 4, "double": 8}.get(type_.typename) or (
+                int(digits) // 8 if digits.isdigit() else 1
+            )
             return at + (4 - at) % size + size
         at += -at % 4 + 4
         wide = isinstance(type_, UnboundedWString | BoundedWString)
