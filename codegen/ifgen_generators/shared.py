@@ -39,8 +39,8 @@ def called_messages(types: Mapping[str, Message]) -> set[str]:
 def smallest_element(message: Message, types: Mapping[str, Message]) -> int:
     """The least number of bytes of a message in a sequence: those of its values, without any padding.
 
-    It limits the counts that a payload can have. `Wire.min_size` does not: it has the padding of a message that
-    stands alone.
+    It limits the counts that a payload can have. `Wire.min_size` does not: it has the padding of a message
+    that stands alone.
     """
     size = 0
     for field in message.fields:

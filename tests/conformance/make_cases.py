@@ -1,4 +1,4 @@
-"""Make the cases of the suite: `python tests/conformance/make_cases.py [FOLDER]`, for what is compiled.
+"""Make the cases of the suite: `python -m tests.conformance.make_cases [FOLDER]`, for what is compiled.
 
 Needs ROS 2 Jazzy's wheels and a C++ compiler. Real rosidl and Fast CDR write every payload: through rclpy for the
 packages of the wheels, and through a C++ program for the others. Takes some minutes. The result is in `cases/`.
@@ -21,6 +21,15 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, Final
 
+import ifgen
+from ifgen_runtime import from_dict, serialize, to_dict
+from ifgen_runtime.field_types import Basic, Field, Text, fields_of, message_class
+
+from tests.codec.big_endian import big_endian
+from tests.codec.support import Classes, generate
+from tests.conformance import definitions
+from tests.conformance.testees.python import text_of
+
 ROOT: Final = Path(__file__).resolve().parents[2]
 CASES: Final = Path(__file__).with_name("cases")
 SHARE: Final = Path(sys.prefix) / "share"
@@ -32,16 +41,7 @@ VISIBILITY: Final = (
 )
 LETTERS: Final = "abcxyz019_/é€𝄞"
 
-sys.path[:0] = [str(ROOT / "tests/codec"), str(Path(__file__).parent)]
-
-import definitions
-import ifgen
-from big_endian import big_endian  # type: ignore[import-not-found]  # found by sys.path
-from ifgen_runtime import from_dict, serialize, to_dict
-from ifgen_runtime.field_types import Basic, Field, Text, fields_of, message_class
-from support import Classes, generate  # type: ignore[import-not-found]
-
-# -- values -----------------------------------------------------------------------------------------------------------
+# -- values
 
 
 def text(source: random.Random, type_: Text, ascii_only: bool = False) -> str:
@@ -104,7 +104,7 @@ def random_message(source: random.Random, cls: type[Any], depth: int = 0) -> Any
     return message
 
 
-# -- what real rosidl and Fast CDR write ------------------------------------------------------------------------------
+# -- what real rosidl and Fast CDR write
 
 
 class Wheels:
@@ -340,7 +340,7 @@ def hashes_in(folder: Path) -> dict[str, str]:
     }
 
 
-# -- the cases --------------------------------------------------------------------------------------------------------
+# -- the cases
 
 
 def alignment(classes: Classes) -> Iterator[tuple[str, Any]]:
@@ -516,9 +516,6 @@ def equal_cases() -> Iterator[str]:
 
 def constant_cases(wheels: Wheels, registry: Any) -> Iterator[str]:
     """Every constant; those of the wheels have rosidl's values."""
-    sys.path.append(str(Path(__file__).with_name("testees")))
-    from python import text_of  # type: ignore[import-not-found]  # found by sys.path
-
     for interface in registry:
         for message in getattr(interface, "messages", (interface,)):
             cls = wheels.class_of(message.type_name) if message.constants else None
@@ -623,5 +620,5 @@ def _in_order(interfaces: Path) -> Iterator[Path]:
 if __name__ == "__main__":
     if os.environ.get("GLIBC_TUNABLES") != TUNABLES:
         os.environ["GLIBC_TUNABLES"] = TUNABLES
-        os.execv(sys.executable, [sys.executable, *sys.argv])
+        os.execv(sys.executable, [sys.executable, "-m", "tests.conformance.make_cases", *sys.argv[1:]])
     main()

@@ -31,8 +31,7 @@ def run_suite(
     listed = ["--failures", str(HERE / f"failures/{failures}.txt")] if failures else []
     result = subprocess.run(
         [sys.executable, "-m", "ifgen", "conformance", *listed, *options, "--", *testee],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        capture_output=True,
         text=True,
         timeout=280,
         check=False,

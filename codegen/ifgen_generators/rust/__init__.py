@@ -1,4 +1,4 @@
-"""Rust from interfaces: a crate without dependencies and unsafe code, which reads and writes CDR (docs/rust.md)."""
+"""Rust from interfaces: a crate that reads and writes CDR, without dependencies and unsafe code."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ class Codec:
         """The path of a field in errors."""
         return f'"{".".join((*self._outer, *step.path))}"'
 
-    # -- sizes --------------------------------------------------------------------------------------------------------
+    # -- sizes
 
     def end(self, steps: Sequence[Step]) -> list[str]:
         """The body of `end`."""
@@ -122,7 +122,7 @@ class Codec:
         self._depth -= 1
         self._add("}")
 
-    # -- writing ------------------------------------------------------------------------------------------------------
+    # -- writing
 
     def write(self, steps: Sequence[Step]) -> list[str]:
         """The body of `write`."""
@@ -176,7 +176,7 @@ class Codec:
             self._add(f"if !{value}.is_empty() {{ w.align({step.element_align}); }}")
         self._loop(step, value, self._write, self._write_text)
 
-    # -- reading ------------------------------------------------------------------------------------------------------
+    # -- reading
 
     def read(self, steps: Sequence[Step], borrowed: bool = False) -> list[str]:
         """The body of `read`, of the message or of its view."""
@@ -244,10 +244,8 @@ class Codec:
         return f"r.{name}({most}, {self._field(step)})"
 
     def _read_many(self, step: Step, name: str) -> None:
-        if step.kind == "texts":
-            size = 4
-        else:
-            size = smallest_element(self._types[step.type_name or ""], self._types)
+        element_type = self._types.get(step.type_name or "")  # None for strings, which have a length at least
+        size = smallest_element(element_type, self._types) if element_type else 4
         align = f"r.take({step.element_align}, 0)?;"
         if step.count is not None:
             if step.kind == "repeat" and step.element_align > 1:

@@ -15,13 +15,13 @@ def canonical(interfaces: Sequence[Interface], crate: str) -> Iterator[str]:
     for message in messages:
         path = f"{crate}::{message.type_name.replace('/', '::')}"
         yield f"\nimpl Canonical for {path} {{\n"
-        used = "path" if message.fields else "_path"
-        yield f"    fn dump(&self, {used}: &str, {'out' if message.fields else '_out'}: &mut Vec<String>) {{\n"
+        unused = "" if message.fields else "_"
+        yield f"    fn dump(&self, {unused}path: &str, {unused}out: &mut Vec<String>) {{\n"
         for field in message.fields:
             value = f"self.{key(field.name)}"
             yield f'        {_wide(field, value)}.dump(&join(path, "{field.name}"), out);\n'
         yield "    }\n"
-        yield f"    fn load({'words' if message.fields else '_words'}: &mut Words) -> Self {{\n        Self {{\n"
+        yield f"    fn load({unused}words: &mut Words) -> Self {{\n        Self {{\n"
         for field in message.fields:
             load = "load_wide(words)" if field.type.primitive == "wstring" else "Canonical::load(words)"
             yield f"            {key(field.name)}: {load},\n"

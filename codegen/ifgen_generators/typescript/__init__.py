@@ -1,4 +1,4 @@
-"""TypeScript from interfaces: ES modules without dependencies, which read and write CDR (docs/typescript.md)."""
+"""TypeScript from interfaces: ES modules that read and write CDR, without dependencies."""
 
 from __future__ import annotations
 

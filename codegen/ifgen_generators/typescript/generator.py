@@ -63,7 +63,8 @@ def _with_options(text: str, options: Options) -> str:
 
 def _registry(interfaces: Sequence[Interface], ext: str) -> str:
     """All messages, all type hashes, and the types of all constants, by name."""
-    imports, rows, hashes, constants = [], [], dict[str, str](), []
+    imports, rows, constants = list[str](), list[str](), list[str]()
+    hashes: dict[str, str] = {}
     for interface in interfaces:
         path = f"{interface.package}/{interface.folder}/{interface.name}"
         for message in interface.types:
@@ -152,7 +153,7 @@ class _Module:
                 )
                 yield f'import {{ {", ".join(wanted)} }} from "{there}{ext}";\n'
 
-    # -- one message --------------------------------------------------------------------------------------------------
+    # -- one message
 
     def _message(self, message: Message) -> Iterator[str]:
         name = message.name
@@ -244,7 +245,7 @@ class _Module:
             return self._options.int64
         return {"bool": "boolean", "string": "string", "wstring": "string"}.get(kind.primitive, "number")
 
-    # -- values -------------------------------------------------------------------------------------------------------
+    # -- values
 
     def _value(self, kind: FieldType, value: Value) -> str:
         if kind.primitive in ("string", "wstring"):
@@ -282,14 +283,14 @@ class _Module:
             return "0" if self._options.int64 == "number" else "0n"
         return {"bool": "false", "string": '""', "wstring": '""'}.get(kind.primitive, "0")
 
-    # -- services and actions -----------------------------------------------------------------------------------------
+    # -- services and actions
 
     def _whole(self) -> Iterator[str]:
         """The value and the namespace of a service or an action."""
         interface = self._interface
         name = interface.name
         parts = {message.name.removeprefix(f"{name}_"): message.name for message in interface.types}
-        services = {"SendGoal": {}, "GetResult": {}} if interface.kind == "action" else {}
+        services = ("SendGoal", "GetResult") if interface.kind == "action" else ()
         rows = [
             f"{short}: {full}," for short, full in parts.items() if short.partition("_")[0] not in services
         ]

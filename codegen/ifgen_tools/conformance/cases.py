@@ -33,7 +33,7 @@ def folder() -> Path:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One request, and the replies that are right: data, or `refused`, or `any` where only a crash is wrong."""
+    """One request, and the right replies: data, `refused`, or `any` where only a crash is wrong."""
 
     name: str
     op: str

@@ -28,13 +28,17 @@ _MOST = 20  # failures that are printed
     "--failures",
     metavar="FILE",
     type=EXISTING_FILE,
-    help="A list of expected failures: lines `[some] PATTERN REASON`. If one of them passes, that is an error.",
+    help="Expected failures, in lines `[some] PATTERN REASON`. If one of them passes, that is an error.",
 )
+@click.option("--cases", "folder", metavar="DIR", type=FOLDER, help="Another folder with cases/.")
 @click.option(
-    "--cases", "folder", metavar="DIR", type=FOLDER, help="Another folder with cases/ and interfaces/."
+    "--timeout",
+    metavar="SECONDS",
+    type=click.FloatRange(min=0, min_open=True),
+    default=10.0,
+    show_default=True,
+    help="The longest time that a reply may take.",
 )
-@click.option("--timeout", metavar="SECONDS", type=click.FloatRange(min=0, min_open=True), default=10.0, show_default=True,
-              help="The longest time that a reply may take.")  # fmt: skip
 @click.option("--junit", metavar="FILE", type=OUTPUT_FILE, help="Write the results as JUnit XML.")
 @click.option("--json", "json_file", metavar="FILE", type=OUTPUT_FILE, help="Write the results as JSON.")
 def conformance(

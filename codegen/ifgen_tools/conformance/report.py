@@ -133,9 +133,8 @@ class Report:
         counts = sum(self.table().values(), Counter[Outcome]())
         lines = ['<?xml version="1.0" encoding="utf-8"?>']
         skipped = counts["skipped"] + counts["expected"]
-        lines.append(
-            f'<testsuite name="conformance" tests="{len(self.results)}" failures="{counts["failed"]}" skipped="{skipped}">'
-        )
+        numbers = f'tests="{len(self.results)}" failures="{counts["failed"]}" skipped="{skipped}"'
+        lines.append(f'<testsuite name="conformance" {numbers}>')
         for result in self.results:
             attributes = f"classname={quoteattr(result.case.group)} name={quoteattr(result.case.name)}"
             element = {"passed": "", "failed": "failure"}.get(result.outcome, "skipped")

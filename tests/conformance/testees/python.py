@@ -51,7 +51,7 @@ class Refused(Exception):
     """The library refused the input."""
 
 
-# -- the walk ---------------------------------------------------------------------------------------------------------
+# -- the walk
 
 
 class Library:
@@ -152,7 +152,7 @@ def text_of(type_: ValueType, value: Any) -> str:
     return encoded.hex()
 
 
-# -- the libraries ----------------------------------------------------------------------------------------------------
+# -- the libraries
 
 
 class Classes(Library):
@@ -361,7 +361,7 @@ def definitions(registry: Registry) -> Iterator[tuple[str, str]]:
             yield interface.type_name, interface.source.text
 
 
-# -- the protocol -----------------------------------------------------------------------------------------------------
+# -- the protocol
 
 
 def answer(library: Library, op: str, type_name: str, rest: str) -> str:
