@@ -1,0 +1,1 @@
+"""C++17 headers for messages, services and actions, which need no ROS."""
