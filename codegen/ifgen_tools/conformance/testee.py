@@ -1,0 +1,134 @@
+"""A testee: a program that answers requests, one line each."""
+
+from __future__ import annotations
+
+import os
+import re
+import selectors
+import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+from ifgen.command_kit.tool import ToolError
+
+Verdict = Literal["ok", "refused", "skip", "fail", "crash", "timeout"]
+_VERDICTS: Final[tuple[Verdict, ...]] = ("ok", "refused", "skip", "fail")
+_FIRST_REPLY: Final = 60.0  # seconds, for a program that compiles or loads first
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """The answer to a request: what kind of answer, and what follows it."""
+
+    verdict: Verdict
+    data: str = ""
+
+    @property
+    def text(self) -> str:
+        """One line."""
+        return f"{self.verdict} {self.data}".rstrip()
+
+
+class Testee:
+    """A program that is started when it is first asked, and again after it crashed."""
+
+    def __init__(self, command: Sequence[str], timeout: float) -> None:
+        self._command = command
+        self._timeout = timeout
+        self._process: subprocess.Popen[bytes] | None = None
+        self._buffer = b""
+        self._next = 0
+
+    def hello(self) -> dict[str, str]:
+        """Start the program, and return what it says of itself. ToolError if it does not speak the protocol."""
+        reply = self.ask("hello", "-", timeout=_FIRST_REPLY)
+        pairs = dict(word.partition("=")[::2] for word in reply.data.split())
+        if reply.verdict != "ok" or pairs.get("protocol") != "1":
+            help = "docs/conformance.md has the protocol; a testee must reply `ok ID protocol=1 language=...`"
+            raise ToolError(f"{self._command[0]} does not answer `hello`: {reply.text}", help)
+        return pairs
+
+    def ask(self, op: str, type_name: str, *arguments: str, timeout: float | None = None) -> Reply:
+        """Send one request, and return the reply. A program that crashed or was too slow is ended."""
+        timeout = timeout or self._timeout
+        if self._process is None:
+            self._process = self._start()
+            if op != "hello":
+                self.ask("hello", "-", timeout=_FIRST_REPLY)
+        self._next += 1
+        request = " ".join((op, str(self._next), type_name, *arguments))
+        assert self._process.stdin is not None
+        try:
+            self._process.stdin.write(request.encode() + b"\n")
+            self._process.stdin.flush()
+            line = self._line(timeout)
+        except BrokenPipeError:
+            line = ""
+        if line is None:
+            self.close()
+            return Reply("timeout", f"no reply within {timeout:g} s")
+        if not line:
+            code = self.close()
+            return Reply("crash", f"exit code {code}")
+        return self._parsed(line)
+
+    def _parsed(self, line: str) -> Reply:
+        word, _, rest = line.partition(" ")
+        id_, _, data = rest.partition(" ")
+        if word not in _VERDICTS or id_ != str(self._next):
+            self.close()  # one answer too many, or a print that does not belong there
+            return Reply("fail", f"not a reply to request {self._next}: {line[:80]!r}")
+        return Reply(word, data)
+
+    def _start(self) -> subprocess.Popen[bytes]:
+        self._buffer = b""
+        try:
+            return subprocess.Popen(self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        except OSError as error:
+            raise ToolError(f"cannot start {self._command[0]}: {error.strerror}") from None
+
+    def _line(self, timeout: float) -> str | None:
+        """The next line without its end; empty at the end of the output, None if there is none in time."""
+        process = self._process
+        assert process is not None and process.stdout is not None
+        with selectors.DefaultSelector() as selector:
+            selector.register(process.stdout, selectors.EVENT_READ)
+            while b"\n" not in self._buffer:
+                if not selector.select(timeout):
+                    return None
+                data = os.read(process.stdout.fileno(), 1 << 16)
+                if not data:
+                    return ""
+                self._buffer += data
+        line, _, self._buffer = self._buffer.partition(b"\n")
+        return line.decode("ascii", "replace").rstrip("\r") or " "
+
+    @property
+    def peak(self) -> int:
+        """The most memory that the program has had so far, in bytes; 0 where the system does not say."""
+        status = Path(f"/proc/{self._process.pid}/status") if self._process else Path()
+        if not status.is_file():
+            return 0
+        match = re.search(r"VmHWM:\s*(\d+) kB", status.read_text())
+        return int(match[1]) * 1024 if match else 0
+
+    def close(self) -> int | None:
+        """End the program, and return its exit code if it ended by itself."""
+        process, self._process = self._process, None
+        if process is None:
+            return None
+        assert process.stdin is not None and process.stdout is not None
+        try:
+            process.stdin.close()
+        except BrokenPipeError:
+            pass
+        try:
+            return process.wait(1)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            return None
+        finally:
+            process.stdout.close()
