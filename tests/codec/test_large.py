@@ -15,9 +15,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Registry
-from ifgen.generator_py.codec import plan as planning
-from ifgen.generator_py.codec.plan import Extents, plan
 from ifgen.generator_py.codec.python.text import CodecText, render
+from ifgen.generator_py.names import slot_name
+from ifgen.wire import plan as planning
+from ifgen.wire.plan import Extents, plan
 
 from .strategies import messages
 from .support import OWN_INTERFACES, Classes, generate
@@ -42,7 +43,7 @@ def fields(count: int, *types: str) -> str:
 
 
 def planned(registry: Registry, name: str) -> CodecText:
-    return render(plan(registry.message(f"large_msgs/msg/{name}"), Extents(registry)))
+    return render(plan(registry.message(f"large_msgs/msg/{name}"), Extents(registry), slot_name))
 
 
 def size(codec: CodecText) -> int:

@@ -9,9 +9,9 @@ import ifgen
 import pytest
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec.plan import Extents, plan
 from ifgen.generator_py.codec.python.text import render
-from ifgen.generator_py.names import class_reference
+from ifgen.generator_py.names import class_reference, slot_name
+from ifgen.wire.plan import Extents, plan
 from ifgen_runtime import codec as runtime
 
 from .support import OWN_INTERFACES, ROOT
@@ -31,7 +31,7 @@ def test_text_is_whole(registry: Registry) -> None:
     """Each codec defines, imports or receives as an argument every name that it uses, and no others."""
     extents = Extents(registry)
     for message in messages(registry):
-        codec = render(plan(message, extents))
+        codec = render(plan(message, extents, slot_name))
         text = "\n".join([*codec.constants, codec.serialize, codec.deserialize, codec.attachment])
         assert max(map(len, text.splitlines())) <= 106, message.type_name
         nodes = list(ast.walk(ast.parse(text)))
@@ -51,7 +51,7 @@ def test_text_is_whole(registry: Registry) -> None:
 
 def test_types_of_one_name_are_kept_apart(registry: Registry) -> None:
     """Parts of one interface are named by their names, classes of other modules by package and folder too."""
-    event = render(plan(registry.message("codec_msgs/srv/Ask_Event"), Extents(registry)))
+    event = render(plan(registry.message("codec_msgs/srv/Ask_Event"), Extents(registry), slot_name))
     assert "creator(Ask_Request)" in " ".join(event.constants)
     assert ".__class__ is Ask_Response" in event.serialize
     assert "creator(codec_msgs_msg_Pair)" in " ".join(event.constants)

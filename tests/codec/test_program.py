@@ -6,8 +6,9 @@ from pathlib import Path
 
 import ifgen
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec.plan import Extents, plan
-from ifgen.generator_py.codec.positions import (
+from ifgen.generator_py.names import slot_name
+from ifgen.wire.plan import Extents, plan
+from ifgen.wire.positions import (
     Alignment,
     Positions,
     Tile,
@@ -17,7 +18,7 @@ from ifgen.generator_py.codec.positions import (
     smallest_size,
     tile_of,
 )
-from ifgen.generator_py.codec.program import (
+from ifgen.wire.program import (
     Array,
     Blank,
     Call,
@@ -49,7 +50,7 @@ def program(folder: Path, text: str) -> Program:
     (messages / "Large.msg").write_text("".join(f"string text{n}\n" for n in range(130)))
     (messages / "Some.msg").write_text(text)
     registry = ifgen.load(folder / "some_msgs")
-    return plan(registry.message("some_msgs/msg/Some"), Extents(registry))
+    return plan(registry.message("some_msgs/msg/Some"), Extents(registry), slot_name)
 
 
 def instructions(folder: Path, text: str) -> tuple[Instruction, ...]:

@@ -9,8 +9,9 @@ from typing import Any
 
 import ifgen
 import pytest
-from ifgen.generator_py.codec.plan import Extents, plan
 from ifgen.generator_py.codec.table import table_of
+from ifgen.generator_py.names import slot_name
+from ifgen.wire.plan import Extents, plan
 from ifgen_runtime.codec.choice import chosen
 
 from .support import Classes
@@ -28,7 +29,7 @@ def rows(folder: Path, text: str) -> tuple[list[str], list[str]]:
     (messages / "Large.msg").write_text("".join(f"string text{n}\n" for n in range(130)))
     (messages / "Some.msg").write_text(text)
     registry = ifgen.load(folder / "some_msgs")
-    table = table_of(plan(registry.message("some_msgs/msg/Some"), Extents(registry)))
+    table = table_of(plan(registry.message("some_msgs/msg/Some"), Extents(registry), slot_name))
     return list(table.rows), [type_.name for type_ in table.types]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import yaml
-from ifgen.generator_py.outputs.build import node_view
+from ifgen.generator_py.outputs.nodes import node_model
 from ifgen.nodl.model import NodeDescription, Parameter, ParameterType, ParameterValue
 
 
@@ -21,7 +21,7 @@ def test_a_default_is_yaml_that_every_reader_takes(type_: ParameterType, value: 
     nothing = ((),) * 6
     parameters = (Parameter("gain", type_, value),)
     node = NodeDescription("robot", "arm", "", "callbacks", "Arm", "arm.py", parameters, *nothing)
-    [parameter] = node_view(node).parameters
+    [parameter] = node_model(node).parameters
     assert parameter.default is not None
     loaded = yaml.safe_load(parameter.default)
     assert (tuple(loaded) if isinstance(value, tuple) else loaded) == value

@@ -115,6 +115,11 @@ def describe(interface: Described, registry: Registry) -> dict[str, Any]:
     }
 
 
+def type_id(type_: FieldType) -> int:
+    """The number of a field's type in a type description."""
+    return int(_field_type(type_)["type_id"])
+
+
 def type_hash(interface: Described, registry: Registry) -> str:
     """The hash that ROS knows a type by: `RIHS01_` and 64 hexadecimal digits. Defaults do not count in it."""
     return TypeHashes(registry).of(interface)

@@ -13,10 +13,10 @@ from threading import RLock
 from typing import Any, Final
 
 from ifgen.definition.interfaces import Message
-from ifgen.generator_py.codec.plan import plan
 from ifgen.generator_py.codec.python.text import CodecText, render
 from ifgen.generator_py.messages.classes import Facts
-from ifgen.generator_py.names import class_reference
+from ifgen.generator_py.names import class_reference, slot_name
+from ifgen.wire.plan import plan
 
 _RUNTIME: Final = "ifgen_runtime.codec"
 _NONE: Final = CodecText((), (), (), "", "", "pass")
@@ -77,7 +77,7 @@ def _attach(
     with _lock:
         if not _is_later(cls, "__serialize__"):
             return  # another thread was first
-        codec = render(plan(message, facts.extents))
+        codec = render(plan(message, facts.extents, slot_name))
         for type_ in codec.class_types:
             nested = made[type_.type_name]
             module[class_reference(type_, message)] = nested

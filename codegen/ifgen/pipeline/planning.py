@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -22,8 +22,6 @@ from ifgen.writing.write import ROOT, OutputPackage
 
 if TYPE_CHECKING:
     from ifgen.generator_py.outputs.plan import PlannedOutput
-    from ifgen.generator_py.outputs.view import PackageView
-    from ifgen.nodl.model import NodeDescription
 
 # Late imports: what a run needs that is about nodes, makes packages for pip, or has outputs of the user's.
 
@@ -160,10 +158,11 @@ class _Outputs:
 
     def __init__(self, custom: Customization, resolved: ResolvedInput) -> None:
         from ifgen.generator_py.outputs.plan import plan_outputs  # of use to few
+        from ifgen.pipeline.model import build_model
 
         import_folders = {target.name: target.import_folder for target in resolved.targets if target.nodes}
-        views = tuple(_views(resolved))
-        self._planned = plan_outputs(custom.outputs, views, import_folders, partial=custom.partial)
+        packages = [package for package in build_model(resolved).model.packages if package.generate]
+        self._planned = plan_outputs(custom.outputs, packages, import_folders, partial=custom.partial)
 
     def added_to(self, package: PlannedPackage) -> PlannedPackage:
         """The package with its outputs, some of which may be beside it."""
@@ -184,21 +183,6 @@ class _Outputs:
     def of_run(self) -> dict[str, Artifact]:
         """The outputs of the whole run, by their paths."""
         return {p.artifact.path: p.artifact for p in self._planned if p.package is None}
-
-
-def _views(resolved: ResolvedInput) -> Iterator[PackageView]:
-    # Few users have outputs of their own.
-    from ifgen.generator_py.outputs.build import interface_view, node_view
-    from ifgen.generator_py.outputs.view import PackageView
-
-    for target in resolved.targets:
-        interfaces = target.interfaces.interfaces if target.interfaces else ()
-        nodes: Sequence[NodeDescription] = target.nodes.nodes if target.nodes else ()
-        yield PackageView(
-            target.name,
-            tuple(interface_view(interface, resolved.registry) for interface in interfaces),
-            tuple(map(node_view, sorted(nodes, key=lambda node: node.name))),
-        )
 
 
 def _taken(planned: PlannedOutput) -> Diagnostic:

@@ -5,18 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ifgen.generator_py.outputs.view import FieldView, InterfaceView, MessageName, TypeView
+    from ifgen.model import Field, FieldType, Interface, TypeReference
 
 _PYTHON = {"bool": "bool", "int": "int", "float": "float", "byte": "int", "string": "str"}
 _JSON = {"bool": "boolean", "int": "integer", "float": "number", "byte": "integer", "string": "string"}
 
 
-def model(message: MessageName) -> str:
+def model(message: TypeReference) -> str:
     """The name for the model of a message from another module: `geometry_msgs_msg_Point`."""
     return f"{message.package}_{message.folder}_{message.name}"
 
 
-def imports(interface: InterfaceView) -> list[str]:
+def imports(interface: Interface) -> list[str]:
     """The import statements of a module, in the order that isort wants."""
     types = [field.type for message in interface.messages for field in message.fields]
     names = ["Annotated"] if any("Annotated" in annotation(type_) for type_ in types) else []
@@ -30,7 +30,7 @@ def imports(interface: InterfaceView) -> list[str]:
     return [*([f"from typing import {', '.join(names)}", ""] if names else []), *sorted(others)]
 
 
-def annotation(type_: TypeView) -> str:
+def annotation(type_: FieldType) -> str:
     """The annotation of a field, with the bounds of its type."""
     low, high = (0, 255) if type_.base == "byte" else (type_.minimum, type_.maximum)
     element = model(type_.message) if type_.message else _PYTHON[type_.base]
@@ -40,12 +40,12 @@ def annotation(type_: TypeView) -> str:
     return _bounded(f"list[{element}]", min_length=type_.size, max_length=type_.size or type_.maximum_size)
 
 
-def annotation_of_constant(type_: TypeView) -> str:
+def annotation_of_constant(type_: FieldType) -> str:
     """The annotation of a constant, without bounds."""
     return "bytes" if type_.base == "byte" else _PYTHON[type_.base]
 
 
-def default_value(field: FieldView) -> str:
+def default_value(field: Field) -> str:
     """The argument that makes the value of a field that is left out."""
     type_ = field.type
     if type_.message and not type_.many:
@@ -58,7 +58,7 @@ def default_value(field: FieldView) -> str:
     return f"default_factory=lambda: {value}" if type_.many else f"default={value}"
 
 
-def description(field: FieldView) -> str:
+def description(field: Field) -> str:
     """The first line about a field in the interface, and its unit, as a Python literal."""
     text = field.documentation.partition("\n")[0]
     return repr(f"{text} [{field.unit}]".strip() if field.unit else text)
@@ -70,13 +70,13 @@ def docstring_text(text: str) -> str:
     return "\n".join([first, *(f"    {line}".rstrip() for line in more)])
 
 
-def to_message(value: str, type_: TypeView) -> str:
+def to_message(value: str, type_: FieldType) -> str:
     """The expression for a message's field, from `value`, the model's."""
     element = "{}.to_message()" if type_.message else "bytes([{}])" if type_.base == "byte" else "{}"
     return _each(value, type_, element)
 
 
-def from_message(value: str, type_: TypeView) -> str:
+def from_message(value: str, type_: FieldType) -> str:
     """The expression for a model's field, from `value`, the message's, whose arrays may be numpy's."""
     if type_.message:
         element = f"{model(type_.message)}.from_message({{}})"
@@ -87,7 +87,7 @@ def from_message(value: str, type_: TypeView) -> str:
     return _each(value, type_, element)
 
 
-def schema(type_: TypeView) -> dict[str, Any]:
+def schema(type_: FieldType) -> dict[str, Any]:
     """The JSON schema of a field."""
     if type_.message:
         name = type_.message
@@ -103,7 +103,7 @@ def schema(type_: TypeView) -> dict[str, Any]:
     return {"type": "array", "items": found, **_given(lengths)}
 
 
-def _each(value: str, type_: TypeView, element: str) -> str:
+def _each(value: str, type_: FieldType, element: str) -> str:
     if not type_.many:
         return element.format(value)
     return value if element == "{}" else f"[{element.format('e')} for e in {value}]"

@@ -6,7 +6,7 @@ import html
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ifgen.generator_py.outputs.view import EndpointView, InterfaceView, NodeView, PackageView, QosView
+    from ifgen.model import Endpoint, Interface, Node, Package, Qos
 
 _SENDERS = ("publishers", "service_clients", "action_clients")
 
@@ -27,7 +27,7 @@ def anchor(name: str) -> str:
     return "".join(c if c.isalnum() else "-" for c in name)
 
 
-def qos_text(qos: QosView | None) -> str:
+def qos_text(qos: Qos | None) -> str:
     """A QoS profile in a few words: `last 1, best effort`."""
     if qos is None:
         return "default"
@@ -37,17 +37,17 @@ def qos_text(qos: QosView | None) -> str:
     return ", ".join(word.lower().replace("_", " ") for word in words)
 
 
-def category(endpoint: EndpointView) -> str:
+def category(endpoint: Endpoint) -> str:
     """The kind of an endpoint: `service server`."""
     return endpoint.category.removesuffix("s").replace("_", " ")
 
 
-def is_documented(type_name: str, packages: tuple[PackageView, ...]) -> bool:
+def is_documented(type_name: str, packages: tuple[Package, ...]) -> bool:
     """Whether an interface is described in the reference."""
     return any(interface.type_name == type_name for interface in interfaces(packages))
 
 
-def edges(packages: tuple[PackageView, ...]) -> list[tuple[str, str, str, str]]:
+def edges(packages: tuple[Package, ...]) -> list[tuple[str, str, str, str]]:
     """The graph: (kind, from, to, type), where a name that starts with `/` is a topic, service or action."""
     found: list[tuple[str, str, str, str]] = []
     for node in nodes(packages):
@@ -58,22 +58,22 @@ def edges(packages: tuple[PackageView, ...]) -> list[tuple[str, str, str, str]]:
     return found
 
 
-def meeting_points(packages: tuple[PackageView, ...]) -> dict[str, str]:
+def meeting_points(packages: tuple[Package, ...]) -> dict[str, str]:
     """The topics, services and actions, and their types."""
     return {end.full_name: end.type_name for node in nodes(packages) for end in node.endpoints}
 
 
-def nodes(packages: tuple[PackageView, ...]) -> list[NodeView]:
+def nodes(packages: tuple[Package, ...]) -> list[Node]:
     """The nodes of all packages."""
     return [node for package in packages for node in package.nodes]
 
 
-def interfaces(packages: tuple[PackageView, ...]) -> list[InterfaceView]:
+def interfaces(packages: tuple[Package, ...]) -> list[Interface]:
     """The interfaces of all packages."""
     return [interface for package in packages for interface in package.interfaces]
 
 
-def users(interface: InterfaceView, packages: tuple[PackageView, ...]) -> list[tuple[NodeView, EndpointView]]:
+def users(interface: Interface, packages: tuple[Package, ...]) -> list[tuple[Node, Endpoint]]:
     """The nodes that use an interface, and the endpoints through which they do."""
     return [(n, e) for n in nodes(packages) for e in n.endpoints if e.type_name == interface.type_name]
 

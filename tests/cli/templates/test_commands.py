@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 from ifgen import resources
-from ifgen.generator_py.outputs.view import InterfaceView, PackageView
 from ifgen.generator_py.templates import catalogue
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
+from ifgen.model import Interface, Package
 from pydantic import TypeAdapter
 
 from ..conftest import Run, write
@@ -42,7 +42,7 @@ def test_list_names_what_there_is(ifgen: Run, project: Path) -> None:
         "\n"
         "doc.md.j2\n"
         "  makes   docs/{package}/{interface:snake}.md, output 'docs'\n"
-        "  given   interface: InterfaceView, package: PackageView\n"
+        "  given   interface: Interface, package: Package\n"
         "  yours   templates/doc.md.j2\n"
     )
     assert ifgen("templates", "list", "message_package").out.count("\n\n") > 5
@@ -185,14 +185,14 @@ def test_check_prints_as_the_other_check_does(ifgen: Run, project: Path) -> None
     done = ifgen("templates", "check")
     assert done.code == 1
     assert done.out == (
-        "error[unknown-attribute]: an InterfaceView has no 'nme'\n"
+        "error[unknown-attribute]: an Interface has no 'nme'\n"
         " --> templates/doc.md.j2:1:14\n"
         "  |\n"
         "1 | {{ interface.nme }}\n"
         "  |              ^^^\n"
         "  = help: did you mean 'name'?\n"
         "\n"
-        "warning[printed-value]: a tuple of InterfaceView is printed as Python shows it\n"
+        "warning[printed-value]: a tuple of Interface is printed as Python shows it\n"
         " --> templates/doc.md.j2:2:11\n"
         "  |\n"
         "2 | {{ package.interfaces }}\n"
@@ -216,9 +216,9 @@ def test_context(ifgen: Run, project: Path, name: str) -> None:
     assert found["message_package/interface.py.j2"]["module"]["type_name"].startswith("a_msgs/")
     given = found["outputs per interface"]
     assert given["interface"]["package"] == given["package"]["name"] == "a_msgs"
-    TypeAdapter(InterfaceView).validate_python(given["interface"])
+    TypeAdapter(Interface).validate_python(given["interface"])
     text = ifgen("templates", "context", name).out
-    assert "\n  interface: InterfaceView\n" in text
+    assert "\n  interface: Interface\n" in text
     assert max(map(len, text.splitlines())) < 120
 
 
@@ -232,7 +232,7 @@ def test_context_of_a_node(ifgen: Run, project: Path) -> None:
     node = found["outputs per node"]["node"]
     assert node["publishers"][0]["full_name"] == "/chatter"
     assert node["publishers"][0]["qos"]["depth"] == 3
-    TypeAdapter(PackageView).validate_python(found["outputs per package"]["package"])
+    TypeAdapter(Package).validate_python(found["outputs per package"]["package"])
     assert found["node_package/base.py.j2"]["node"]
     done = ifgen("templates", "context", "robot/walker")
     assert (done.code, "there is no type 'robot/walker'" in done.err) == (2, True)
@@ -245,6 +245,6 @@ def test_the_schema_describes_every_context(ifgen: Run, project: Path) -> None:
     assert schema["properties"].keys() == {*TEMPLATES, *(f"outputs per {per}" for per in OUTPUT_VARIABLES)}
     for name, definition in schema["$defs"].items():
         assert definition.get("description"), name
-    view = schema["$defs"]["FieldView"]
+    view = schema["$defs"]["Field"]
     assert view["properties"]["name"] == {"title": "Name", "type": "string"}
     assert set(view["required"]) == set(view["properties"])

@@ -8,29 +8,29 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import pytest
-from ifgen.generator_py.outputs import plan, view
+from ifgen import model
+from ifgen.generator_py.outputs import plan
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES
 
 from ..conftest import Run, write
 
 TEXT = (Path(__file__).parents[3] / "docs/templates.md").read_text()
-VIEWS = [
-    value for name, value in vars(view).items() if name.endswith(("View", "Name")) and is_dataclass(value)
-]
+MODEL = (Path(__file__).parents[3] / "docs/model.md").read_text()
+CLASSES = [value for value in vars(model).values() if isinstance(value, type) and is_dataclass(value)]
 
 
-@pytest.mark.parametrize("cls", VIEWS)
+@pytest.mark.parametrize("cls", CLASSES)
 def test_every_attribute_is_described(cls: type) -> None:
     for field in fields(cls):
-        assert f"`{field.name}`" in TEXT, f"{cls.__name__}.{field.name}"
-        assert re.search(rf"\b{field.name}\b", cls.__doc__ or "") or f"`{field.name}`" in TEXT
+        described = any(f"`{field.name}`" in text for text in (TEXT, MODEL, cls.__doc__ or ""))
+        assert described or f'"{field.name}": ' in MODEL, f"{cls.__name__}.{field.name}"
 
 
 def test_keys_fields_and_variables() -> None:
     for key in ("template", "path", "per", "only"):
         assert f"`{key}`" in TEXT
     for per, names in plan.FIELDS.items():
-        [row] = [line for line in TEXT.splitlines() if line.startswith(f"| `{per}` | ") and "View" in line]
+        [row] = [line for line in TEXT.splitlines() if line.startswith(f"| `{per}` | ") and "Package" in line]
         assert all(f"`{{{name}}}`" in row or "and " in row for name in names)
         assert all(f"`{name}`" in row for name in OUTPUT_VARIABLES[per])
 

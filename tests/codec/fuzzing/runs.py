@@ -15,7 +15,7 @@ from multiprocessing.sharedctypes import RawArray
 from pathlib import Path
 from typing import Any
 
-from ifgen.generator_py.codec import plan as planning
+from ifgen.wire import plan as planning
 from ifgen_runtime.codec.choice import chosen
 
 from ...native import sanitizers

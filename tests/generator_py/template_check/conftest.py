@@ -10,10 +10,10 @@ import pytest
 from ifgen.config.customization import Customization
 from ifgen.diagnostics import Diagnostic, InputError, Source
 from ifgen.generator_py.messages.context import InterfaceModule
-from ifgen.generator_py.outputs.view import InterfaceView
 from ifgen.generator_py.templates.check.check import Checker
 from ifgen.generator_py.templates.check.syntax import Template, parse_text
 from ifgen.generator_py.templates.render import _environment_for
+from ifgen.model import Interface
 
 Check = Callable[..., "Found"]
 
@@ -61,7 +61,7 @@ def check_text(text: str, others: Mapping[str, str] | None = None) -> Found:
 
     checker = Checker(environment, load, texts)
     try:
-        checker.check("t.j2", {"module": InterfaceModule, "interface": InterfaceView})
+        checker.check("t.j2", {"module": InterfaceModule, "interface": Interface})
     except InputError as error:  # the checker collects the templates that it is asked to load
         raise AssertionError(error) from error
     return Found(tuple(checker.found()))

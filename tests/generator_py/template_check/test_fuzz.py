@@ -10,7 +10,7 @@ from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Constant, Field, InterfacePackage, Message, Registry
 from ifgen.definition.types import BasicType, UnboundedString
 from ifgen.generator_py.messages.package import plan
-from ifgen.generator_py.outputs.build import interface_view
+from ifgen.generator_py.outputs.interfaces import interface_model
 from ifgen.generator_py.templates.check.syntax import _OffsetLexer
 from ifgen.generator_py.templates.render import _environment_for
 
@@ -26,7 +26,7 @@ INTERFACE = Message(
 REGISTRY = Registry.of({"p_msgs": InterfacePackage("p_msgs", (INTERFACE,))}, ("p_msgs",))
 GIVEN = {
     **plan(REGISTRY.packages["p_msgs"], REGISTRY)[-1].variables,
-    "interface": interface_view(INTERFACE, REGISTRY),
+    "interface": interface_model(INTERFACE, REGISTRY),
 }
 
 NAMES = st.sampled_from(

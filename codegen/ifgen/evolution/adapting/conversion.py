@@ -24,8 +24,8 @@ from ifgen.definition.types import (
     ValueType,
 )
 from ifgen.evolution.values import same_constant
-from ifgen.generator_py.codec.program import NUMBERS
 from ifgen.generator_py.messages.enums import values
+from ifgen.wire.program import NUMBERS
 
 Converter: TypeAlias = Callable[[NamespacedType, NamespacedType], "str | None"]
 """The function that converts messages of one type to another; empty if they are the same, None if none."""

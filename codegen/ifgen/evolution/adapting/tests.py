@@ -29,10 +29,10 @@ from ifgen.evolution.adapting.module import part_name
 from ifgen.evolution.adapting.steps import PARAMETERS, Function, Functions, Step, TwoVersions
 from ifgen.evolution.edits import Versions
 from ifgen.generator_py.adapters import AdapterCase, AdapterTests, CheckText, OldStrategies
-from ifgen.generator_py.codec.program import NUMBERS
 from ifgen.generator_py.imports import import_statement
 from ifgen.generator_py.messages.fields import is_float32
 from ifgen.generator_py.tests.strategies import Strategies, enclosed
+from ifgen.wire.program import NUMBERS
 
 _DIGITS = 80
 """Hexadecimal digits in a line."""

@@ -25,7 +25,7 @@ from dataclasses import dataclass, field
 from typing import Final, assert_never
 
 from ifgen.definition.types import BasicTypeName, NamespacedType
-from ifgen.generator_py.codec.program import (
+from ifgen.wire.program import (
     NUMBERS,
     Array,
     Blank,

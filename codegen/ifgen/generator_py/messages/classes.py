@@ -16,15 +16,15 @@ from ifgen.definition.types import (
     NamespacedType,
     UnboundedSequence,
 )
-from ifgen.generator_py.codec.plan import Extents, plan
-from ifgen.generator_py.codec.program import NUMBERS
 from ifgen.generator_py.codec.python.text import CodecText, render
 from ifgen.generator_py.imports import IN_MESSAGES, Import, Scope
 from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass, ViewsText
 from ifgen.generator_py.messages.enums import enums
 from ifgen.generator_py.messages.fields import Reference, default_literal, literal, python_field, rosidl_text
-from ifgen.generator_py.names import class_reference
+from ifgen.generator_py.names import class_reference, slot_name
 from ifgen.generator_py.text import docstring
+from ifgen.wire.plan import Extents, plan
+from ifgen.wire.program import NUMBERS
 
 # The classes of `ifgen_runtime.views`, by the dtype that their names spell in lower case.
 _ARRAYS = {name.lower().removesuffix("array"): name for name in IN_MESSAGES if name.endswith("Array")}
@@ -45,7 +45,7 @@ class Facts:
 
     def codec(self, message: Message) -> CodecText:
         """The codec that the module of a message has."""
-        return render(plan(message, self.extents))
+        return render(plan(message, self.extents, slot_name))
 
     def module_of(self, type_: NamespacedType) -> str:
         """The module that other modules import a message class from."""

@@ -23,8 +23,8 @@ from ifgen.definition.types import (
     ValueType,
     element_of,
 )
-from ifgen.generator_py.codec.program import NUMBERS, Number
 from ifgen.generator_py.imports import Scope
+from ifgen.wire.program import NUMBERS, Number
 
 Reference: TypeAlias = Callable[[NamespacedType], str]
 """The name of a message class in the module."""

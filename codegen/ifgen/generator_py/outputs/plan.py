@@ -14,7 +14,7 @@ from ifgen.config.customization import Output
 from ifgen.definition.names import snake_case
 from ifgen.diagnostics import Diagnostic, InputError, Label
 from ifgen.generator_py.artifact import Artifact
-from ifgen.generator_py.outputs.view import PackageView
+from ifgen.model import Package
 from ifgen.reading import manifest
 
 FIELDS: Final = {
@@ -47,7 +47,7 @@ def mistakes(outputs: Iterable[Output]) -> list[Diagnostic]:
 
 def plan_outputs(
     outputs: Sequence[Output],
-    packages: Sequence[PackageView],
+    packages: Sequence[Package],
     import_folders: Mapping[str, str],
     *,
     partial: bool = False,
@@ -82,7 +82,7 @@ def plan_outputs(
 
 
 def _files(
-    output: Output, packages: Sequence[PackageView], import_folders: Mapping[str, str]
+    output: Output, packages: Sequence[Package], import_folders: Mapping[str, str]
 ) -> Iterator[PlannedOutput]:
     if output.per == "run":
         if packages:
@@ -114,7 +114,7 @@ def _planned(
     return PlannedOutput(output, package, Artifact(path, output.template, variables))
 
 
-def _picked(package: PackageView, only: Sequence[str]) -> PackageView | None:
+def _picked(package: Package, only: Sequence[str]) -> Package | None:
     """A package with what the patterns pick of it; None if that is nothing."""
     if not only or any(fnmatchcase(package.name, pattern) for pattern in only):
         return package
@@ -155,7 +155,7 @@ def _wrong_pattern(output: Output) -> Diagnostic | None:
     return None
 
 
-def _wrong_path(planned: PlannedOutput, packages: Sequence[PackageView]) -> Diagnostic | None:
+def _wrong_path(planned: PlannedOutput, packages: Sequence[Package]) -> Diagnostic | None:
     text = planned.artifact.path
     path = PurePosixPath(text)
     if not path.name or text.endswith("/") or str(path) != text or "\\" in text or not text.isprintable():
@@ -184,7 +184,7 @@ def _collisions(planned: Sequence[PlannedOutput]) -> Iterator[Diagnostic]:
             )
 
 
-def _idle_patterns(output: Output, packages: Sequence[PackageView]) -> Iterator[Diagnostic]:
+def _idle_patterns(output: Output, packages: Sequence[Package]) -> Iterator[Diagnostic]:
     for pattern in output.only:
         if not any(_picked(package, (pattern,)) for package in packages):
             known = sorted({package.name for package in packages})

@@ -20,12 +20,13 @@ from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Interface, InterfacePackage, Registry
 from ifgen.generator_py.messages import package as message_package
 from ifgen.generator_py.nodes import package as node_package
-from ifgen.generator_py.outputs.build import interface_view, node_view
-from ifgen.generator_py.outputs.view import PackageView
+from ifgen.generator_py.outputs.interfaces import interface_model
+from ifgen.generator_py.outputs.nodes import node_model
 from ifgen.generator_py.templates.checking import given
 from ifgen.generator_py.templates.exports import files
 from ifgen.generator_py.templates.table import OUTPUT_VARIABLES, TEMPLATES
 from ifgen.generator_py.tests import package as test_package
+from ifgen.model import Package
 from ifgen.nodl.model import NodeDescription, NodePackage
 from ifgen.reading.storage import read_limited
 
@@ -38,8 +39,8 @@ _SHOWN = 72
 def of_interface(interface: Interface, registry: Registry) -> Contexts:
     """The variables of templates for an interface, as if it were alone in its package."""
     package = InterfacePackage(interface.package, (interface,))
-    view = interface_view(interface, registry)
-    alone = PackageView(interface.package, (view,), ())
+    view = interface_model(interface, registry)
+    alone = Package(interface.package, (view,), (), generate=True)
     planned = (
         *message_package.plan(package, registry),
         *test_package.plan_interface_tests(package, registry),
@@ -55,8 +56,8 @@ def of_interface(interface: Interface, registry: Registry) -> Contexts:
 def of_node(package: NodePackage, node: NodeDescription) -> Contexts:
     """The variables of templates for a node, as if it were alone in its package."""
     only = NodePackage(package.name, package.root, (node,), package.metadata, package.sources)
-    view = node_view(node)
-    alone = PackageView(package.name, (), (view,))
+    view = node_model(node)
+    alone = Package(package.name, (), (view,), generate=True)
     planned = (*node_package.plan_nodes(only), *node_package.plan_users_files(only))
     return {
         **{artifact.template: artifact.variables for artifact in planned},
@@ -179,12 +180,8 @@ def listed(custom: Customization) -> tuple[Listed, ...]:
 
 
 def type_name(type_: object) -> str:
-    """A type as a reader wants to see it: `InterfaceModule`, `tuple[PackageView, ...]`."""
-    return (
-        type_.__name__
-        if isinstance(type_, type)
-        else str(type_).replace("ifgen.generator_py.outputs.view.", "")
-    )
+    """A type as a reader wants to see it: `InterfaceModule`, `tuple[Package, ...]`."""
+    return type_.__name__ if isinstance(type_, type) else str(type_).replace("ifgen.model.interfaces.", "")
 
 
 def _ours(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import cache
+import json
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.imports import gathered
 from ifgen.generator_py.templates.filters import explained, load
+from ifgen.model import plain
 from ifgen.writing import cache as kept
 
 
@@ -101,6 +103,7 @@ def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
         bytecode_cache=_bytecode_cache(),
     )
     environment.filters["snake"] = snake_case
+    environment.policies["json.dumps_function"] = partial(json.dumps, default=plain)
     return environment
 
 

@@ -19,8 +19,8 @@ from ifgen.generator_py.nodes.context import (
     NodePackageFiles,
     ParametersModule,
 )
-from ifgen.generator_py.outputs.view import InterfaceView, NodeView, PackageView
 from ifgen.generator_py.tests.context import InterfaceTests, NodeTests, OwnTests, TestSupport
+from ifgen.model import Interface, Node, Package
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,9 +77,9 @@ TEMPLATES: Final[Mapping[str, Entry]] = {
 """ifgen's own."""
 
 OUTPUT_VARIABLES: Final[Mapping[str, Mapping[str, object]]] = {
-    "package": {"package": PackageView},
-    "interface": {"interface": InterfaceView, "package": PackageView},
-    "node": {"node": NodeView, "package": PackageView},
-    "run": {"packages": tuple[PackageView, ...]},
+    "package": {"package": Package},
+    "interface": {"interface": Interface, "package": Package},
+    "node": {"node": Node, "package": Package},
+    "run": {"packages": tuple[Package, ...]},
 }
 """The variables of the templates of `[tool.ifgen.outputs]`, by the `per` of their output."""

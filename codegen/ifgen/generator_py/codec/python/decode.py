@@ -11,8 +11,20 @@ from collections.abc import Sequence
 from typing import assert_never
 
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec.positions import Positions, Tile, smallest_size, tile_of
-from ifgen.generator_py.codec.program import (
+from ifgen.generator_py.codec.python.body import Constants, Reference
+from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece, run_format
+from ifgen.generator_py.codec.python.reads import Reads, tuple_target
+from ifgen.generator_py.codec.python.statements import (
+    POSITION,
+    Assign,
+    Do,
+    Positioned,
+    product,
+    slot_text,
+    variable,
+)
+from ifgen.wire.positions import Positions, Tile, smallest_size, tile_of
+from ifgen.wire.program import (
     NUMBERS,
     Array,
     Blank,
@@ -27,18 +39,6 @@ from ifgen.generator_py.codec.program import (
     Texts,
     Value,
     Values,
-)
-from ifgen.generator_py.codec.python.body import Constants, Reference
-from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece, run_format
-from ifgen.generator_py.codec.python.reads import Reads, tuple_target
-from ifgen.generator_py.codec.python.statements import (
-    POSITION,
-    Assign,
-    Do,
-    Positioned,
-    product,
-    slot_text,
-    variable,
 )
 
 

@@ -18,14 +18,18 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, assert_never
 
 from ifgen.definition.types import BasicTypeName
-from ifgen.generator_py.codec.positions import (
+from ifgen.generator_py.codec.python.body import Constants, Reference
+from ifgen.generator_py.codec.python.parts import Parts, Wire
+from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece
+from ifgen.generator_py.codec.python.statements import POSITION, Positioned, product, slot_text, variable
+from ifgen.wire.positions import (
     Alignment,
     Positions,
     Tile,
     following_alignments,
     tile_of,
 )
-from ifgen.generator_py.codec.program import (
+from ifgen.wire.program import (
     NUMBERS,
     Array,
     Blank,
@@ -40,10 +44,6 @@ from ifgen.generator_py.codec.program import (
     Value,
     Values,
 )
-from ifgen.generator_py.codec.python.body import Constants, Reference
-from ifgen.generator_py.codec.python.parts import Parts, Wire
-from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece
-from ifgen.generator_py.codec.python.statements import POSITION, Positioned, product, slot_text, variable
 
 _LARGE_ARRAY: Final = 256
 _WIRES: Final[dict[BasicTypeName, str]] = {

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ifgen.generator_py.codec.positions import Alignment
 from ifgen.generator_py.codec.python.body import Body, Constants
 from ifgen.generator_py.codec.python.pieces import (
     HEADER_SIZE,
@@ -19,6 +18,7 @@ from ifgen.generator_py.codec.python.pieces import (
     run_format,
 )
 from ifgen.generator_py.codec.python.statements import POSITION, Positioned
+from ifgen.wire.positions import Alignment
 
 
 class Wire(NamedTuple):

@@ -7,8 +7,8 @@ from itertools import groupby
 from typing import Final, NamedTuple
 
 from ifgen.definition.types import BasicTypeName
-from ifgen.generator_py.codec.positions import COUNT_SIZE, Alignment
-from ifgen.generator_py.codec.program import NUMBERS
+from ifgen.wire.positions import COUNT_SIZE, Alignment
+from ifgen.wire.program import NUMBERS
 
 HEADER_SIZE: Final = 4
 """Bytes before the position from which everything is aligned."""

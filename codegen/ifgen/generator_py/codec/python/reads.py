@@ -7,11 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ifgen.generator_py.codec.positions import Alignment
-from ifgen.generator_py.codec.program import NUMBERS, Array
 from ifgen.generator_py.codec.python.body import Body, Constants
 from ifgen.generator_py.codec.python.pieces import HEADER_SIZE, Piece, after_run, places_of, run_format
 from ifgen.generator_py.codec.python.statements import POSITION, Positioned, slot_text
+from ifgen.wire.positions import Alignment
+from ifgen.wire.program import NUMBERS, Array
 
 _LARGE_REGION = 1024
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final, NamedTuple, NoReturn, TypeAlias, assert_never
 
-from ifgen.generator_py.codec.program import Slot
+from ifgen.wire.program import Slot
 
 
 class Positioned(str):

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec.positions import Alignment, entry_alignment, largest_alignment, tile_of
-from ifgen.generator_py.codec.program import NUMBERS, Call, Instruction, Program, Repeat, Values
 from ifgen.generator_py.codec.python.body import Body, Constants, Reference, functions
 from ifgen.generator_py.codec.python.decode import Decoder
 from ifgen.generator_py.codec.python.encode import Encoder
@@ -17,6 +15,8 @@ from ifgen.generator_py.codec.python.reads import Reads
 from ifgen.generator_py.codec.python.statements import LINE_LENGTH, POSITION, wrapped
 from ifgen.generator_py.codec.table import Table, table_of
 from ifgen.generator_py.names import class_reference
+from ifgen.wire.positions import Alignment, entry_alignment, largest_alignment, tile_of
+from ifgen.wire.program import NUMBERS, Call, Instruction, Program, Repeat, Values
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """The program of a message: what happens to each of its fields on the wire, in order.
 
-The program knows CDR and the slots of our classes. It does not know the language that runs it. The rules
-are XCDR1's: a value is aligned to its own size, counted from the end of the 4-byte header. A nested message
-adds no alignment of its own. An empty message is one byte. So no instruction says "align": the values of an
+The program knows CDR and the slots of fields. It does not know the language that runs it. The rules are
+XCDR1's: a value is aligned to its own size, counted from the end of the 4-byte header. A nested message adds
+no alignment of its own. An empty message is one byte. So no instruction says "align": the values of an
 instruction imply it, and `positions` works out what is known about a position before the program runs.
 
 Nested messages are flattened: `Enter` numbers each of them, and later slots refer to the number. Only large
@@ -10,10 +10,12 @@ messages, and those in arrays and sequences, keep instructions of their own (`Ca
 
 The instructions are a closed sum, and each rendering matches all of them:
 
-* Python text, in `python`: two straight-line functions.
-* A table for the codec in C, in `table`: one row for each instruction and each item of a run. `Enter` stores
-  a message under its number. A `Run` begins with the number of its rows, so that one check of the remaining
-  space covers all of them. A `Repeat` begins with the number of rows of its body, which follow it.
+* Python text, in `generator_py/codec/python`: two straight-line functions.
+* The steps of `ifgen.model`, which generators of other languages read.
+* A table for the codec in C, in `generator_py/codec/table.py`: one row for each instruction and each item of
+  a run. `Enter` stores a message under its number. A `Run` begins with the number of its rows, so that one
+  check of the remaining space covers all of them. A `Repeat` begins with the number of rows of its body,
+  which follow it.
 * The check of payloads for real rclpy walks the same table, without slots and classes.
 
 Most are named tuples: a run makes millions, and a frozen dataclass takes three times as long to make. A

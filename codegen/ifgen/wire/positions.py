@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import gcd
 from typing import Final, NamedTuple, assert_never
 
-from ifgen.generator_py.codec.program import (
+from ifgen.wire.program import (
     NUMBERS,
     Array,
     Blank,

@@ -7,16 +7,17 @@ function handles much more than `MOST_STEPS`, so the text of a message grows as 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import count
+from operator import attrgetter
 from typing import Final
 
 from ifgen.definition import types
 from ifgen.definition.interfaces import Field, Message, Registry
 from ifgen.definition.references import references
 from ifgen.definition.types import FieldType, NamespacedType, ValueType
-from ifgen.generator_py.codec.program import (
+from ifgen.wire.program import (
     NUMBERS,
     Array,
     Blank,
@@ -34,7 +35,6 @@ from ifgen.generator_py.codec.program import (
     Value,
     Values,
 )
-from ifgen.generator_py.names import slot_name
 
 MOST_STEPS: Final = 128
 
@@ -134,11 +134,15 @@ class Extents:
 
 
 _ITEMS: Final = (Enter, Value, Array, Blank)
+_NAME: Final[Callable[[Field], str]] = attrgetter("name")
 
 
-def plan(message: Message, extents: Extents) -> Program:
-    """Plan the program of a message, or of a part of a service or action."""
-    planner = _Planner(extents)
+def plan(message: Message, extents: Extents, slot_name: Callable[[Field], str] = _NAME) -> Program:
+    """Plan the program of a message, or of a part of a service or action.
+
+    `slot_name` gives the name for the slot of a field in the target language.
+    """
+    planner = _Planner(extents, slot_name)
     return Program(
         NamespacedType(message.package, message.folder, message.name),
         tuple(_in_runs(planner.fields(group, 0)) for group in extents.groups(message)),
@@ -146,11 +150,20 @@ def plan(message: Message, extents: Extents) -> Program:
     )
 
 
+def plan_calls(message: Message, extents: Extents) -> tuple[Instruction, ...]:
+    """The instructions for the fields of a message alone: each message in it is a call."""
+    return _in_runs(_Planner(extents, _NAME, calls_all=True).fields(message.fields, 0))
+
+
 class _Planner:
     """Turns fields into instructions. Those of a nested message replace it."""
 
-    def __init__(self, extents: Extents) -> None:
+    def __init__(
+        self, extents: Extents, slot_name: Callable[[Field], str], *, calls_all: bool = False
+    ) -> None:
         self._extents = extents
+        self._slot_name = slot_name
+        self._calls_all = calls_all
         self._numbers = count(1)
 
     def fields(self, fields: Sequence[Field], message: int) -> Iterator[Item | Instruction]:
@@ -158,7 +171,7 @@ class _Planner:
         if not fields:
             yield Blank()
         for field in fields:
-            yield from self._field(field.type, Slot(message, slot_name(field)))
+            yield from self._field(field.type, Slot(message, self._slot_name(field)))
 
     def _field(self, type_: FieldType, slot: Slot) -> Iterator[Item | Instruction]:
         match type_:
@@ -179,7 +192,7 @@ class _Planner:
 
     def _message(self, type_: NamespacedType, number: int) -> Iterator[Item | Instruction]:
         message = self._extents.registry.message(type_.type_name)
-        if self._extents.of(message).is_large:
+        if self._calls_all or self._extents.of(message).is_large:
             yield Call(number, type_)
         else:
             yield from self.fields(message.fields, number)
