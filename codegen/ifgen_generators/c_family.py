@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Final
 
-from ifgen.model import FieldType, Interface, Message, Value
+from ifgen.model import FieldType, Interface, Message, Model, Package, Value
 
 C_TYPES: Final = {
     "bool": "bool",
@@ -16,6 +17,9 @@ C_TYPES: Final = {
     **{f"{sign}int{bits}": f"{sign}int{bits}_t" for sign in ("", "u") for bits in (8, 16, 32, 64)},
 }
 """The C types of primitives. A byte and a character are unsigned, as in rosidl."""
+
+MAX_COUNT: Final = 2**31 - 1
+"""The largest bound that has a chance to fit into memory."""
 
 _SUFFIXES: Final = {"uint32": "U", "int64": "LL", "uint64": "ULL"}
 _SMALLEST: Final = {"int64": -(2**63), "int32": -(2**31)}
@@ -64,6 +68,21 @@ def _wide(character: str) -> str:
     if code < 0xA0:  # no universal character name may say these
         return f"\\{code:03o}"
     return f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+
+def generated(model: Model) -> Iterator[Interface]:
+    """The interfaces that are asked for."""
+    for package in generated_packages(model):
+        yield from package.interfaces
+
+
+def generated_packages(model: Model) -> list[Package]:
+    """The packages with interfaces that are asked for, and these alone."""
+    packages = (
+        replace(package, interfaces=tuple(interface for interface in package.interfaces if interface.generate))
+        for package in model.packages
+    )
+    return [package for package in packages if package.interfaces]
 
 
 def path(interface: Interface, suffix: str) -> str:

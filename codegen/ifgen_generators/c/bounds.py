@@ -43,12 +43,17 @@ class Bounds:
         self._bounds = bounds
         self._rooms: dict[str, Room] = {}
         self.unbounded: list[Unbounded] = []
+        self.overflowing: list[Field] = []
         self.unused = {key for key in bounds if not any(character in key for character in "*?")}
 
     def add(self, message: Message) -> None:
-        """Find the room for the fields of a message. What has none is `unbounded`."""
+        """Find the room for the fields of a message. What has none is `unbounded`, defaults without room `overflowing`."""
         for field in message.fields:
-            self._rooms[field.id] = Room(self._elements(message, field), self._text(message, field))
+            room = self._rooms[field.id] = Room(self._elements(message, field), self._text(message, field))
+            values = field.default_elements or ((field.default_value,) if field.default_value else ())
+            lengths = (_length(str(value.value), field.type.primitive) for value in values)
+            if len(values) > (room.elements or 1) or (room.text is not None and max(lengths, default=0) > room.text):
+                self.overflowing.append(field)
 
     def of(self, field: Field) -> Room:
         """The room of a field of a message that was added."""
@@ -87,3 +92,7 @@ class Bounds:
 
     def _patterns(self) -> Iterator[str]:
         return (key for key in self._bounds if "*" in key or "?" in key)
+
+
+def _length(text: str, primitive: str) -> int:
+    return len(text.encode()) if primitive == "string" else len(text.encode("utf-16-le")) // _UTF16

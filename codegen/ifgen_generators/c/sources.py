@@ -14,9 +14,9 @@ from ifgen_generators.c.rows import Row, Tables, c_name
 class Sources:
     """Writes the files of a model whose fields all have bounds."""
 
-    def __init__(self, model: Model, bounds: Bounds) -> None:
+    def __init__(self, model: Model, bounds: Bounds, tables: Tables) -> None:
         self._bounds = bounds
-        self.tables = Tables(model, bounds)
+        self._tables = tables
         self._has_defaults: dict[str, bool] = {}
         for message in model.types:
             self._has_defaults[message.type_name] = any(self._is_not_zero(field) for field in message.fields)
@@ -67,7 +67,7 @@ class Sources:
         name = c_name(message)
         yield f'#define {name}_TYPE_NAME "{message.type_name}"'
         yield f'#define {name}_TYPE_HASH "{message.type_hash}"'
-        yield f"#define {name}_MAX_SIZE {self.tables.max_size(message)}u"
+        yield f"#define {name}_MAX_SIZE {self._tables.max_size(message)}u"
         yield ""
         for constant in message.constants:
             yield from comment(constant.documentation, constant.unit)
@@ -100,7 +100,7 @@ class Sources:
         type_, room, name = field.type, self._bounds.of(field), field.names["c"]
         after = ""
         if type_.message:
-            element = c_name(self.tables.nested(field))
+            element = c_name(self._tables.nested(field))
         elif type_.primitive == "string":
             element, after = "char", f"[{(room.text or 0) + 1}]"
         elif type_.primitive == "wstring":
@@ -115,7 +115,7 @@ class Sources:
 
     def _definitions(self, message: Message) -> Iterator[str]:
         name = c_name(message)
-        rows = self.tables.rows(message)
+        rows = self._tables.rows(message)
         # One row is one copy, so there must be no padding between the fields that it stands for.
         checks = [row for row in rows if row.last and row.last != row.member]
         for i, row in enumerate(checks):
@@ -145,7 +145,7 @@ class Sources:
             return
         target, type_ = f"message->{field.names['c']}", field.type
         if type_.message:
-            init = f"{c_name(self.tables.nested(field))}_init"
+            init = f"{c_name(self._tables.nested(field))}_init"
             indices = range(type_.size) if type_.size is not None else None
             yield from [f"{init}(&{target}[{i}]);" for i in indices] if indices else [f"{init}(&{target});"]
             return

@@ -10,7 +10,6 @@ typedef struct testee_field {
   char kind; /* b: bool, i: signed, u: unsigned, f: float, s: string, w: wstring, m: message */
   uint8_t width;
   bool is_sequence;
-  bool is_bounded; /* by its interface, not by the options */
   uint32_t offset; /* of the field, and of its first element */
   uint32_t data;
   uint32_t count; /* 0: one value */

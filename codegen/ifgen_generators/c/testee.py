@@ -14,7 +14,7 @@ _WIDTHS = {"bool": 1, "byte": 1, "char": 1}
 
 def testee(model: Model) -> Iterator[tuple[str, str]]:
     """The files of the program: the tables of each package, and `main`."""
-    packages = [package for package in model.packages if package.interfaces]
+    packages = c_family.generated_packages(model)
     names = {message.type_name: c_name(message) for message in model.types}
     for package in packages:
         yield f"testee/{package.name}.c", _package(package, names)
@@ -57,7 +57,7 @@ def _message(message: Message, names: dict[str, str]) -> Iterator[str]:
     yield f"const testee_field {name}_testee[] = {{"
     for field in message.fields:
         yield f"  {_field(field, name, names)},"
-    yield "  {NULL, 0, 0, false, false, 0, 0, 0, 0, NULL},\n};"
+    yield "  {NULL, 0, 0, false, 0, 0, 0, 0, NULL},\n};"
     yield f"static const testee_constant {name}_constants[] = {{"
     for constant in message.constants:
         yield f"  {_constant(constant, name)},"
@@ -80,7 +80,6 @@ def _field(field: Field, owner: str, names: dict[str, str]) -> str:
         f"'{_kind(type_.primitive)}'",
         str((type_.bits or 0) // 8),
         str(bool(is_sequence)).lower(),
-        str(type_.maximum_size is not None or type_.string_bound is not None).lower(),
         f"offsetof({owner}, {member})",
         f"offsetof({owner}, {data})",
         count,

@@ -12,6 +12,8 @@ from ifgen_generators import c_family
 _LONGEST_RUN: Final = 64
 """Fields in one run. Compilers limit how deep templates may nest."""
 
+_COUNT_SIZE: Final = 4
+
 # Macros of system headers that constants of messages are named after.
 _MACROS: Final = frozenset(
     "DEBUG DELETE DOMAIN EOF ERROR FALSE FATAL INFO NAN NONE NULL OK OVERFLOW TRUE UNDERFLOW UNKNOWN WARN".split()
@@ -31,7 +33,9 @@ class Headers:
 
     def __init__(self, model: Model) -> None:
         self._layouts: dict[str, _Layout | None] = {}
+        self._smallest: dict[str, int] = {}
         for message in model.types:
+            self._smallest[message.type_name] = max(1, sum(map(self._fewest, message.fields)))
             self._layouts[message.type_name] = self._plain(message)
 
     def header(self, interface: Interface) -> str:
@@ -87,7 +91,7 @@ class Headers:
     def _traits(self, message: Message) -> Iterator[str]:
         layout = self._layouts[message.type_name] or _Layout(1, 0)
         yield from _names_of(qualified(message), message.type_name, message.type_hash, closed=False)
-        yield f"  static constexpr std::size_t minimum_size = {max(1, message.wire.min_size)};"
+        yield f"  static constexpr std::size_t minimum_size = {self._smallest[message.type_name]};"
         yield f"  static constexpr std::size_t plain_size = {layout.size};"
         yield f"  static constexpr std::size_t plain_alignment = {layout.alignment};"
         parameter = "Message & m" if message.fields else "Message &"
@@ -122,6 +126,14 @@ class Headers:
                 return None
             size += layout.size
         return _Layout(first.alignment, size) if first and size % first.alignment == 0 else None
+
+    def _fewest(self, field: Field) -> int:
+        """The fewest bytes that a field takes, wherever it starts: without padding."""
+        type_ = field.type
+        if type_.many and type_.size is None:
+            return _COUNT_SIZE
+        element = (type_.bits or 0) // 8 or _COUNT_SIZE
+        return (self._smallest[type_.message.type_name] if type_.message else element) * (type_.size or 1)
 
     def _layout(self, type_: FieldType) -> _Layout | None:
         if type_.many and type_.size is None:

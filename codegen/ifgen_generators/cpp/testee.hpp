@@ -104,6 +104,30 @@ template<class Value>
 inline constexpr bool is_leaf = std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string> ||
   std::is_same_v<Value, std::u16string>;
 
+/// The path of a field. Not templates: each of hundreds of types would compile them again.
+class Path
+{
+public:
+  std::string text{};
+
+  std::size_t push(const char * name)
+  {
+    const std::size_t outer = text.size();
+    if (outer != 0) {text += '.';}
+    text += name;
+    return outer;
+  }
+
+  std::size_t push(std::size_t index)
+  {
+    const std::size_t outer = text.size();
+    text += "[" + std::to_string(index) + "]";
+    return outer;
+  }
+
+  void pop(std::size_t outer) {text.resize(outer);}
+};
+
 /// Visits all leaves of a message. A Visitor has `leaf(path, value)` and `count(path, sequence)`.
 template<class Visitor>
 class Walk
@@ -115,7 +139,9 @@ public:
   template<class Value, class... Rest>
   bool run(const char * name, Value & value, Rest &&... rest)
   {
-    visit(prefix_ + name, value);
+    const std::size_t outer = path_.push(name);
+    visit(value);
+    path_.pop(outer);
     if constexpr (sizeof...(Rest) != 0) {run(rest...);}
     return true;
   }
@@ -127,100 +153,108 @@ public:
 
 private:
   Visitor & visitor_;
-  std::string prefix_;
+  Path path_;
 
   template<class Value>
-  void visit(const std::string & path, Value & value)
+  void visit(Value & value)
   {
     if constexpr (is_leaf<std::remove_const_t<Value>>) {
-      visitor_.leaf(path, value);
+      visitor_.leaf(path_.text, value);
     } else {
-      const std::string outer = prefix_;
-      prefix_ = path + ".";
       Traits<std::remove_const_t<Value>>::fields(*this, value);
-      prefix_ = outer;
     }
+  }
+
+  template<class Element, std::size_t size>
+  void visit(std::array<Element, size> & values) {visit_all(values);}
+
+  template<class Element>
+  void visit(std::vector<Element> & values)
+  {
+    visitor_.count(path_.text, values);
+    visit_all(values);
   }
 
   template<class Values>
-  void visit_all(const std::string & path, Values & values)
-  {
-    for (std::size_t i = 0; i < values.size(); ++i) {visit(path + "[" + std::to_string(i) + "]", values[i]);}
-  }
-
-  void visit_all(const std::string & path, const std::vector<bool> & values)
-  {
-    for (const bool value : values) {visitor_.leaf(path, value);}
-  }
-
-  void visit_all(const std::string & path, std::vector<bool> & values)
+  void visit_all(Values & values)
   {
     for (std::size_t i = 0; i < values.size(); ++i) {
-      bool value = values[i];
-      visitor_.leaf(path + "[" + std::to_string(i) + "]", value);
-      values[i] = value;
+      const std::size_t outer = path_.push(i);
+      visit(values[i]);
+      path_.pop(outer);
     }
   }
 
-  template<class Element, std::size_t size>
-  void visit(const std::string & path, std::array<Element, size> & values) {visit_all(path, values);}
-
-  template<class Element, std::size_t size>
-  void visit(const std::string & path, const std::array<Element, size> & values) {visit_all(path, values);}
-
-  template<class Element>
-  void visit(const std::string & path, std::vector<Element> & values)
+  void visit_all(std::vector<bool> & values)
   {
-    visitor_.count(path, values);
-    visit_all(path, values);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const std::size_t outer = path_.push(i);
+      bool value = values[i];
+      visit(value);
+      values[i] = value;
+      path_.pop(outer);
+    }
   }
 };
 
-struct Dumper
+class Dumper
 {
-  std::string text;
+public:
+  std::string text{};
 
   template<class Value>
-  void leaf(const std::string & path, const Value & value)
-  {
-    text += (text.empty() ? "" : " ") + path + "=" + text_of(value);
-  }
+  void leaf(const std::string & path, const Value & value) {add(path, text_of(value));}
 
   template<class Values>
-  void count(const std::string & path, const Values & values) {leaf(path + "#", values.size());}
+  void count(const std::string & path, const Values & values) {add(path + "#", std::to_string(values.size()));}
+
+private:
+  void add(const std::string & path, const std::string & value)
+  {
+    if (!text.empty()) {text += ' ';}
+    text += path + "=" + value;
+  }
 };
 
 /// Takes the values of a canonical text in their order, and compares the paths.
-struct Loader
+class Loader
 {
-  const Words & words;
-  std::size_t next = 0;
+public:
   std::string problem{};
 
-  std::string value_of(const std::string & path)
-  {
-    const std::string word = next < words.size() ? words[next] : "the end of the text";
-    ++next;
-    if (word.compare(0, path.size() + 1, path + "=") != 0) {
-      problem = "expected " + path + ", got " + word;
-      return "0";
-    }
-    return word.substr(path.size() + 1);
-  }
+  explicit Loader(const Words & words)
+  : words_(words) {}
 
   template<class Value>
   void leaf(const std::string & path, Value & value)
   {
-    if (problem.empty()) {read_text(value_of(path), value);}
+    const std::string text = value_of(path);
+    if (problem.empty()) {read_text(text, value);}
   }
 
   template<class Values>
-  void count(const std::string & path, Values & values)
+  void count(const std::string & path, Values & values) {values.resize(count_of(path));}
+
+private:
+  const Words & words_;
+  std::size_t next_ = 0;
+
+  std::string value_of(const std::string & path)
   {
-    std::size_t size = 0;
-    leaf(path + "#", size);
-    if (size > 1000000) {problem = "a count is too large for a test";}
-    values.resize(problem.empty() ? size : 0);
+    const std::string word = next_ < words_.size() ? words_[next_] : "the end of the text";
+    ++next_;
+    if (word.compare(0, path.size() + 1, path + "=") == 0) {return word.substr(path.size() + 1);}
+    problem = "expected " + path + ", got " + word;
+    return "";
+  }
+
+  std::size_t count_of(const std::string & path)
+  {
+    const std::string text = value_of(path + "#");
+    const std::size_t count = problem.empty() ? std::stoul(text) : 0;
+    if (count <= 1000000) {return count;}
+    problem = "a count is too large for a test";
+    return 0;
   }
 };
 
@@ -249,7 +283,7 @@ Reply answer(const std::string & operation, const Words & arguments)
   Message message;
   if (operation == "default") {return encoded(message);}
   if (operation == "load") {
-    Loader loader{arguments};
+    Loader loader(arguments);
     Walk<Loader> walk(loader);
     Traits<Message>::fields(walk, message);
     return loader.problem.empty() ? encoded(message) : Reply{"refused", loader.problem};

@@ -11,7 +11,7 @@ from ifgen_generators.cpp.headers import qualified
 
 def testee(model: Model) -> Iterator[tuple[str, str]]:
     """The files of the program: one for each package, which takes a while to compile, and `main`."""
-    packages = [package for package in model.packages if package.interfaces]
+    packages = c_family.generated_packages(model)
     for package in packages:
         yield f"testee/{package.name}.cpp", _package(package)
     adds = [f"add_{package.name}" for package in packages]
