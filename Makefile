@@ -8,7 +8,7 @@ BIN := $(VENV)/bin
 # Further options of pytest, for each of its sessions: make test WITH="-x".
 WITH :=
 PYTEST := $(BIN)/pytest $(WITH)
-TYPED := codegen/ifgen codegen/ifgen_runtime codegen/packaging codegen/runtime
+TYPED := codegen/ifgen codegen/ifgen_generators codegen/ifgen_runtime codegen/packaging codegen/runtime
 # Tests that the codec in C and the generated functions must pass alike: `make test` runs them with each, the longest first.
 # Tests that use rclpy in their own process: one session for each rclpy.
 # Those of rclpy have one of their own, because nodes that they maltreat may outlive a test.

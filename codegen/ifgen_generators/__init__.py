@@ -1,1 +1,4 @@
-"""The generators of other languages that come with ifgen. They use `ifgen.model` and nothing else of ifgen."""
+"""The generators that come with ifgen: each in a room of its own, on the public interface alone.
+
+They import `ifgen.model` and `ifgen.generators`, as anybody's do, and are found by their entry points.
+"""

@@ -146,7 +146,7 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path, monkeypatch: pytest.M
         "  |\n"
         "6 | nonsense = 1\n"
         "  | ^^^^^^^^ unknown key\n"
-        "  = help: the keys are paths, output, include, exclude, with_deps, tests,\n          templates, filters, outputs, distributions, requirements, ignore,\n          per_file_ignores, strict, breaking, adapters, ros_distro\n"
+        "  = help: the keys are paths, output, include, exclude, with_deps, tests,\n          templates, filters, outputs, generate, python, distributions,\n          requirements, ignore, per_file_ignores, strict, breaking, adapters,\n          ros_distro\n"
     )
 
 

@@ -41,7 +41,7 @@ def requirements(wheel: Path) -> dict[str, str]:
 
 def test_the_wheels_have_everything_and_shadow_nothing(wheels: tuple[Path, Path]) -> None:
     toolkit, runtime = map(files, wheels)
-    folders = {"ifgen", "ifgen_pytest", "ifgen_tools", "ifgen_ros-0.1.0.dist-info"}
+    folders = {"ifgen", "ifgen_generators", "ifgen_pytest", "ifgen_tools", "ifgen_ros-0.1.0.dist-info"}
     assert {name.split("/")[0] for name in toolkit} == folders
     assert {name.split("/")[0] for name in runtime} == {"ifgen_runtime", "ifgen_ros_runtime-0.1.0.dist-info"}
     assert not [n for n in toolkit | runtime if "__pycache__" in n or "/.ifgen-tmp" in n or "/test/" in n]

@@ -152,7 +152,7 @@ def write(
     terminal.print_diagnostics(told, stderr=True)
     _say_what_is_left_out(done.left_out)
     if not quiet:
-        _report(done, settings.output)
+        _report(done, settings)
     return int(any_errors(told) or (changes_fail and bool(done.written or done.removed)))
 
 
@@ -178,22 +178,39 @@ def _say_what_is_left_out(left_out: Sequence[LeftOut]) -> None:
         print(f"left out: {left.name}: {left.reason}", file=sys.stderr)
 
 
-def _report(done: Generated, output: Path) -> None:
-    for path in dict.fromkeys(_whole_package(path, output) or path for path in done.removed):
+def _report(done: Generated, settings: Settings) -> None:
+    output, targets = settings.output, [target.out for target in settings.custom.targets]
+    folders = sorted({output, *targets}, key=lambda folder: (len(folder.parts), folder), reverse=True)
+    for path in dict.fromkeys(_whole_package(path, folders) or path for path in done.removed):
         print(f"removed {shown_path(path)}")
-    where = shown_path(output)
-    if done.written or done.removed:
-        counts = ((done.written, "written"), (done.unchanged, "unchanged"), (done.removed, "removed"))
+    for folder in dict.fromkeys((output, *targets)):
+        _report_folder(done, folder, folders, always=folder == output and settings.custom.python)
+
+
+def _report_folder(done: Generated, folder: Path, folders: Sequence[Path], *, always: bool) -> None:
+    written, unchanged, removed = (
+        [path for path in paths if _folder_of(path, folders) == folder]
+        for paths in (done.written, done.unchanged, done.removed)
+    )
+    where = shown_path(folder)
+    if written or removed:
+        counts = ((written, "written"), (unchanged, "unchanged"), (removed, "removed"))
         print(
             f"{where}: "
             + ", ".join(f"{terminal.counted(len(paths), 'file')} {what}" for paths, what in counts if paths)
         )
-    else:
-        print(f"{where}: up to date ({terminal.counted(len(done.unchanged), 'file')})")
+    elif unchanged or always:
+        print(f"{where}: up to date ({terminal.counted(len(unchanged), 'file')})")
 
 
-def _whole_package(path: Path, output: Path) -> Path | None:
+def _folder_of(path: Path, folders: Sequence[Path]) -> Path:
+    """The innermost of these folders that a file is in."""
+    return next(folder for folder in folders if path.is_relative_to(folder))
+
+
+def _whole_package(path: Path, folders: Sequence[Path]) -> Path | None:
     """The folder of the package that a removed file was in, if nothing of that is left."""
+    output = _folder_of(path, folders)
     folder = output / path.relative_to(output).parts[0]
     return None if folder.exists() else folder
 
@@ -229,7 +246,9 @@ def _check_freshness(
     drifts = found.drifts
     if not drifts:
         if not quiet:
-            print(f"{shown_path(settings.output)}: up to date")
+            custom = settings.custom
+            folders = ([settings.output] if custom.python else []) + [target.out for target in custom.targets]
+            print("\n".join(f"{shown_path(folder)}: up to date" for folder in dict.fromkeys(folders)))
         return int(any_errors(told))
     terminal.print_drift(drifts)
     verb = "is" if len(drifts) == 1 else "are"

@@ -120,7 +120,7 @@ class _Commands(click.Group):
 
     # What starts programs is of the tools, and yet here: to look for an entry point takes 12 to 15 ms.
     elsewhere: Final = (
-        *("adapt", "breaking", "demo", "diff", "generate", "init", "lock", "model", "new"),
+        *("adapt", "breaking", "demo", "diff", "generate", "generators", "init", "lock", "model", "new"),
         *("paths", "router", "rules", "run", "templates", "test", "typings"),
     )
     module_of: Final = {

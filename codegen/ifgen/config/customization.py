@@ -5,12 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Any, Final, Literal, get_args
 
-from ifgen.config.keys import key, list_of, one_of, required, text
+from ifgen.config.keys import FLAG, PATH, Kind, key, list_of, one_of, required, text
 from ifgen.diagnostics import Span
 
 Per = Literal["package", "interface", "node", "run"]
+
+_ONLY: Final = list_of(text(""), 'a list of patterns, such as ["demo_msgs", "*/srv/*"]')
+_COMMAND: Final = list_of(text(""), 'a program and its arguments, such as ["node", "generate.mjs"]')
+_OPTIONS: Final = Kind("a table", lambda value: () if isinstance(value, dict) else (value,))
+_SECONDS: Final = Kind(
+    "a number of seconds above 0",
+    lambda value: () if type(value) in {int, float} and value > 0 else (value,),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +34,32 @@ class Output:
     template: str = required(text("the name of a template in quotes"))
     path: str = required(text('a pattern in quotes, such as "{package}/{interface:snake}.md"'))
     per: Per = required(one_of(*get_args(Per)))
-    only: tuple[str, ...] = key(list_of(text(""), 'a list of patterns, such as ["demo_msgs", "*/srv/*"]'), [])
+    only: tuple[str, ...] = key(_ONLY, [])
     span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A target of `[tool.ifgen.generate]`: what a generator writes into the folder `out`.
+
+    `use` is the name of an installed generator, `command` a program that is one; it has `time_limit` seconds.
+    `only` has patterns as an `Output` has. With `with_deps` all that these interfaces need is generated too.
+    What the generator cannot express is refused, or left out if `unsupported` is "skip". `span` is the place
+    of the table.
+    """
+
+    name: str
+    out: Path = required(PATH)
+    use: str | None = key(text("the name of a generator in quotes"))
+    command: tuple[str, ...] = key(_COMMAND, [])
+    options: Mapping[str, Any] = key(_OPTIONS, {})
+    only: tuple[str, ...] = key(_ONLY, [])
+    with_deps: bool = key(FLAG, False)
+    unsupported: Literal["error", "skip"] = key(one_of("error", "skip"), "error")
+    time_limit: float = key(_SECONDS, 60)
+    base: Path = field(default=Path(), compare=False, repr=False)
+    span: Span | None = field(default=None, compare=False, repr=False)
+    options_span: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +82,8 @@ class Customization:
     outputs per run stay as they are. Without `tests` no tests are generated. `behind` is a second folder of
     templates; those in `templates` win over it. With `distributions`, pip can install generated packages.
     `requirements` says what pip installs for other packages that these need; nothing, where it is empty.
-    `ros_distro` is the target ROS 2, if it is known.
+    `ros_distro` is the target ROS 2, if it is known. `targets` are the generators to run, beside the Python
+    packages or, if `python` is False, in place of them.
     """
 
     templates: Path | None = None
@@ -62,6 +95,8 @@ class Customization:
     distributions: Distributions | None = None
     requirements: Mapping[str, str] = field(default_factory=dict[str, str])
     ros_distro: str | None = None
+    targets: tuple[Target, ...] = ()
+    python: bool = True
 
     @property
     def folders(self) -> tuple[Path, ...]:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, cast, get_args
 
 from ifgen import resources
-from ifgen.config.customization import Output
+from ifgen.config.customization import Output, Target
 from ifgen.config.keys import (
     FLAG,
     PATH,
@@ -43,6 +43,14 @@ _OUTPUTS: Final = Kind(
     lambda value: () if isinstance(value, dict) else (value,),
     lambda tables, base: {name: Output(name, **read(Output, table, base)) for name, table in tables.items()},
     Output,
+)
+_TARGETS: Final = Kind(
+    "a table, whose keys are names for targets",
+    lambda value: () if isinstance(value, dict) else (value,),
+    lambda tables, base: {
+        name: Target(name, **read(Target, table, base), base=base) for name, table in tables.items()
+    },
+    Target,
 )
 _DISTRIBUTIONS: Final = text(
     'a name with {package} in it, such as "acme-{package}"',
@@ -77,6 +85,8 @@ class Config:
     templates: Path | None = key(PATH)
     filters: Path | None = key(PATH)
     outputs: Mapping[str, Output] = key(_OUTPUTS, {})
+    generate: Mapping[str, Target] = key(_TARGETS, {})
+    python: bool = key(FLAG, True)
     distributions: str | None = key(_DISTRIBUTIONS)
     requirements: Mapping[str, str] = key(_REQUIREMENTS, {})
     ignore: frozenset[str] = key(_RULES, [])
@@ -129,6 +139,8 @@ def _mistakes(table: Any) -> list[Mistake]:
         return []
     if found := list(mistakes(Config, table, "tool.ifgen")):
         return found
+    if wrong := list(_wrong_targets(table.get("generate", {}))):
+        return wrong
     rules: dict[tuple[str, ...], Iterable[str]] = {("ignore",): table.get("ignore", ())}
     rules |= {("per_file_ignores", pattern): of for pattern, of in table.get("per_file_ignores", {}).items()}
     if not any(rules.values()):
@@ -141,3 +153,10 @@ def _mistakes(table: Any) -> list[Mistake]:
         for rule in listed
         if (why_not := rulebook.why_not_ignored(rule))
     ]
+
+
+def _wrong_targets(targets: Mapping[str, Mapping[str, Any]]) -> Iterator[Mistake]:
+    for name, target in targets.items():
+        if bool(target.get("use")) == bool(target.get("command")):
+            found = "both are there" if target.get("use") else "neither is there"
+            yield Mistake(("generate", name), f"[tool.ifgen.generate.{name}] needs 'use' or 'command'", found)

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.config.customization import Customization, Distributions
+from ifgen.config.customization import Customization, Distributions, Target
 from ifgen.config.suppressions import Policy
-from ifgen.diagnostics import Diagnostic, Label, UsageError
+from ifgen.diagnostics import Diagnostic, Label, Span, UsageError
 from ifgen.reading.storage import read_limited
 
 # Late imports: the keys of [tool.ifgen], which many commands do without.
@@ -58,14 +58,15 @@ class Settings:
         Raises UsageError if another user configured them. In a folder such as /tmp, anybody can put a
         pyproject.toml above the folders of others.
         """
-        brings_code = self.custom.filters is not None or bool(self.custom.folders)
+        custom = self.custom
+        brings_code = custom.filters is not None or bool(custom.folders) or bool(custom.targets)
         if (
             brings_code
             and self.file is not None
             and self.file.parent != Path.cwd()
             and _is_of_others(self.file)
         ):
-            message = f"{self.file} belongs to another user, and names templates or filters, which are code"
+            message = f"{self.file} belongs to another user, and names templates, filters or generators: code"
             advice = f"if you trust it, change to {self.file.parent}; else see `ifgen generate --isolated`"
             raise UsageError([Diagnostic("configuration", message, help=advice)])
         return self
@@ -108,6 +109,11 @@ def settle(  # noqa: PLR0913 - one for each option
         else Distributions(config.distributions, config.place("distributions")),
         requirements=config.requirements,
         ros_distro=config.ros_distro or os.environ.get("ROS_DISTRO"),
+        targets=tuple(
+            replace(target, span=config.place("generate", name), options_span=_options_place(config, target))
+            for name, target in config.generate.items()
+        ),
+        python=config.python,
     )
     policy = Policy(
         rules=config.ignore,
@@ -125,6 +131,10 @@ def settle(  # noqa: PLR0913 - one for each option
         policy=policy,
         config=config,
     )
+
+
+def _options_place(config: Config, target: Target) -> Span | None:
+    return config.place("generate", target.name, "options") if target.options else None
 
 
 def configured_paths() -> tuple[Path, ...]:

@@ -12,13 +12,15 @@ class Artifact:
 
     `variables` are the variables of the template, by name; their types are in templates/table.py. A module of
     `own_package` has its import lines gathered at its top, those of that package last: its template writes
-    them beside the text that needs them. None leaves lines where they are.
+    them beside the text that needs them. None leaves lines where they are. The text of an output `is_output`:
+    it is parsed, if that can be done, since nothing else vouches for it.
     """
 
     path: str
     template: str
     variables: Mapping[str, object]
     own_package: str | None = None
+    is_output: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -161,8 +161,12 @@ class _Outputs:
         from ifgen.pipeline.model import build_model
 
         import_folders = {target.name: target.import_folder for target in resolved.targets if target.nodes}
-        packages = [package for package in build_model(resolved).model.packages if package.generate]
-        self._planned = plan_outputs(custom.outputs, packages, import_folders, partial=custom.partial)
+        model = build_model(resolved).model
+        packages = [package for package in model.packages if package.generate]
+        variables = {"model": model, "options": {}}
+        self._planned = plan_outputs(
+            custom.outputs, packages, import_folders, variables, partial=custom.partial
+        )
 
     def added_to(self, package: PlannedPackage) -> PlannedPackage:
         """The package with its outputs, some of which may be beside it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -74,7 +74,8 @@ def generate(  # noqa: PLR0913 - one for each option
     nothing has been written. If it is to `keep_going`, it leaves out what is wrong and what needs that. The
     mistakes are then among the diagnostics.
     """
-    with transaction.locked(Path(output)):
+    targets = templates.targets if isinstance(templates, Customization) else ()
+    with transaction.all_locked((Path(output), *(target.out for target in targets))):
         request = _read(
             paths,
             Path(output),
@@ -107,7 +108,7 @@ def drift(  # noqa: PLR0913 - one for each option
         paths, Path(output), include, with_deps, templates, condition, exclude=exclude, keep_going=keep_going
     )
     change = _Change(request, _build(request, UpToDate(), progress))
-    drifts = write.drift(change.packages(), request.output)
+    drifts = write.drift(change.packages(), request.output, change.result.targets)
     return Drifted(drifts, change.diagnostics(), change.result.left_out)
 
 
@@ -203,13 +204,21 @@ def _build(request: Request, up_to_date: UpToDate, progress: Progress | None) ->
     resolved = resolve_what_can_be(request)
     if request.condition is not None:
         request.condition.check(resolved.registries)
+    custom, targets = request.custom, None
+    if custom.targets and not custom.partial:
+        from ifgen.pipeline.generators.run import run_targets  # of use to few
+        from ifgen.pipeline.model import build_model
+
+        targets = run_targets(custom.targets, build_model(resolved))
+    planned = plan(request, resolved, up_to_date, progress) if custom.python else ()
     return BuildResult(
-        packages=render(plan(request, resolved, up_to_date, progress), request.custom),
-        generated={target.name for target in resolved.targets},
-        needed=resolved.needed,
-        diagnostics=resolved.diagnostics(),
-        skipped=up_to_date.packages,
+        packages=render(planned, custom),
+        generated={target.name for target in resolved.targets} if custom.python else (),
+        needed=resolved.needed if custom.python else (),
+        diagnostics=(*resolved.diagnostics(), *(targets.diagnostics if targets else ())),
+        skipped=up_to_date.packages if custom.python else {},
         resolved=resolved,
+        targets=targets.folders if targets else (),
     )
 
 
@@ -234,6 +243,15 @@ class _Change:
         missing = output_diagnostics.missing_packages(self.result.needed, self._request, self._removed)
         return (*self.result.diagnostics, *left_behind, *missing)
 
+    def _by_folder(self, paths: Iterable[Path]) -> dict[Path, list[Path]]:
+        """Files by the innermost folder of the run that they are in."""
+        folders = [self._output, *(target.directory for target in self.result.targets)]
+        folders.sort(key=lambda folder: len(folder.parts), reverse=True)
+        found: dict[Path, list[Path]] = {}
+        for path in paths:
+            found.setdefault(next(f for f in folders if path.is_relative_to(f)), []).append(path)
+        return found
+
     def effects(self, written: Written) -> Generated:
         """The effects of the run, after files were written."""
         skipped = (
@@ -241,10 +259,16 @@ class _Change:
             for name, manifest in self.result.skipped.items()
             for path in write.files_of(self._output / name, self._output, manifest)
         )
-        overwritten = output_diagnostics.overwritten(written.edited, self._output)
+        targets = self.result.skipped_targets
+        of_targets = (path for out in targets for path in write.files_of(out, out, targets[out]))
+        overwritten = [
+            diagnostic
+            for folder, paths in self._by_folder(written.edited).items()
+            for diagnostic in output_diagnostics.overwritten(paths, folder)
+        ]
         return Generated(
             written.written,
-            tuple(sorted((*written.unchanged, *skipped))),
+            tuple(sorted((*written.unchanged, *skipped, *of_targets))),
             written.removed,
             written.kept,
             (*map(output_diagnostics.edited, written.kept), *overwritten, *self.diagnostics()),
@@ -255,5 +279,5 @@ class _Change:
 @contextmanager
 def _prepared(request: Request, result: BuildResult) -> Generator[Callable[[], Generated]]:
     change = _Change(request, result)
-    with write.prepared(change.packages(), request.output, GENERATOR) as finish:
+    with write.prepared(change.packages(), request.output, GENERATOR, result.targets) as finish:
         yield lambda: change.effects(finish())

@@ -17,7 +17,7 @@ from ifgen.reading import package_xml
 from ifgen.reading.manifest import Manifest
 from ifgen.reading.packages import NODE_FOLDER, PackageFiles, node_name
 from ifgen.reading.search_path import SearchPath, WithDeps
-from ifgen.writing.write import OutputPackage
+from ifgen.writing.write import OutputPackage, TargetFolder
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import NodePackage, Nodes
@@ -162,7 +162,7 @@ class BuildResult:
     `packages` are rendered when they are asked for, which is once: a large run has no room for all of them.
     `generated` are the names of its packages. Those among them that are `skipped` are on disk already, each
     with its manifest, and not in `packages`. `needed` are others that these need. `resolved` is None if
-    nothing had to be.
+    nothing had to be. `targets` are the folders of generators, and `skipped_targets` those that are on disk.
     """
 
     packages: Iterable[OutputPackage]
@@ -171,6 +171,8 @@ class BuildResult:
     diagnostics: tuple[Diagnostic, ...]
     skipped: Mapping[str, Manifest]
     resolved: ResolvedInput | None = None
+    targets: tuple[TargetFolder, ...] = ()
+    skipped_targets: Mapping[Path, Manifest] = field(default_factory=dict[Path, Manifest])
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:

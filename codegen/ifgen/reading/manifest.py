@@ -13,6 +13,9 @@ from typing import cast
 from ifgen.reading.storage import MAX_GENERATED, json_of, read_limited
 
 NAME = ".ifgen-manifest.json"
+TARGETS = ".ifgen-targets.json"
+"""The manifest in a folder of targets (`[tool.ifgen.generate]`), which is not the folder of a package."""
+
 _FORMAT = 1
 
 
@@ -55,9 +58,9 @@ class Manifest:
         return None if self.source is None else Path(os.path.normpath(directory.absolute() / self.source))
 
 
-def read(package_folder: Path) -> Manifest | None:
+def read(package_folder: Path, name: str = NAME) -> Manifest | None:
     """The manifest of a generated package; None if there is none. Raises OSError and ValueError."""
-    path = package_folder / NAME
+    path = package_folder / name
     try:
         data = read_limited(path, MAX_GENERATED)
     except (FileNotFoundError, NotADirectoryError):

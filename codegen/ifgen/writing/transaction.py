@@ -50,19 +50,17 @@ class Stage:
         return place
 
     def apply(self, changes: Sequence[tuple[Path, Path | None]]) -> None:
-        """Replace files, in order, by contents that were put here; None removes a file.
+        """Replace files, in order, by contents that were put here, as `apply_all` does."""
+        apply_all([(self, changes)])
 
-        Each file changes in one step: a reader sees the old or the new one. Raises OSError; then, as after
-        Ctrl-C, every file is as before.
-        """
-        with _undone_on_failure() as undo:
-            for i, (path, new) in enumerate(changes):
-                _make_folder(path.parent, undo)
-                _remember(path, self._made() / f"old{i}", undo)
-                if new is None:
-                    path.unlink()
-                else:
-                    new.replace(path)
+    def _apply(self, changes: Sequence[tuple[Path, Path | None]], undo: list[Callable[[], object]]) -> None:
+        for i, (path, new) in enumerate(changes):
+            _make_folder(path.parent, undo)
+            _remember(path, self._made() / f"old{i}", undo)
+            if new is None:
+                path.unlink()
+            else:
+                new.replace(path)
 
     def clear(self) -> None:
         """Remove what is left."""
@@ -75,6 +73,17 @@ class Stage:
             made = tempfile.mkdtemp(prefix=_STAGE, dir=self._directory)
             self._folder = self._directory / Path(made).name  # relative if that is
         return self._folder
+
+
+def apply_all(stages: Iterable[tuple[Stage, Sequence[tuple[Path, Path | None]]]]) -> None:
+    """Replace files of several folders, in order, by contents that were put there; None removes a file.
+
+    Each file changes in one step: a reader sees the old or the new one. Raises OSError; then, as after
+    Ctrl-C, every file is as before.
+    """
+    with _undone_on_failure() as undo:
+        for stage, changes in stages:
+            stage._apply(changes, undo)
 
 
 @contextmanager
@@ -96,6 +105,16 @@ def locked(directory: Path) -> Generator[None]:
     with ExitStack() as held:
         alone = _locked_at_last(directory, held)
         _clear(left_over(directory, alone=alone))
+        yield
+
+
+@contextmanager
+def all_locked(directories: Iterable[Path]) -> Generator[None]:
+    """The same for several folders, each once, in an order in which no two runs wait for each other."""
+    folders = {os.path.normcase(folder.resolve()): folder for folder in directories}
+    with ExitStack() as held:
+        for _, folder in sorted(folders.items()):
+            held.enter_context(locked(folder))
         yield
 
 

@@ -7,12 +7,12 @@ changes all of them or none.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from importlib.util import cache_from_source
 from pathlib import Path
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from ifgen.diagnostics import Diagnostic, InputError, shown_path
 from ifgen.reading import manifest
@@ -39,11 +39,25 @@ class OutputPackage:
     """
 
     name: str
-    files: Mapping[str, str]
+    files: Mapping[str, str | bytes]
     interfaces: tuple[str, ...] = ()
     source: str | None = None
     beside: Mapping[str, str] = field(default_factory=dict[str, str])
     once: Mapping[str, str] = field(default_factory=dict[str, str])
+    manifest: str = manifest.NAME
+
+
+@dataclass(frozen=True, slots=True)
+class TargetFolder:
+    """All files that targets write into a folder, by path in it."""
+
+    directory: Path
+    files: Mapping[str, str | bytes]
+
+    @property
+    def package(self) -> OutputPackage:
+        """The files as those of a package, whose folder is this one."""
+        return OutputPackage(ROOT, self.files, manifest=manifest.TARGETS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +103,7 @@ class _Plan(Generic[Kept]):
     stale: tuple[Path, ...]
     kept: tuple[Path, ...]
     edited: Mapping[Path, bytes]
+    manifest: str
 
 
 def write(packages: Iterable[OutputPackage], directory: Path, generator: str) -> Written:
@@ -104,23 +119,43 @@ def write(packages: Iterable[OutputPackage], directory: Path, generator: str) ->
 
 @contextmanager
 def prepared(
-    packages: Iterable[OutputPackage], directory: Path, generator: str
+    packages: Iterable[OutputPackage], directory: Path, generator: str, targets: Sequence[TargetFolder] = ()
 ) -> Generator[Callable[[], Written]]:
     """The last step of `write`, which changes the files; until then their new contents are beside them.
 
-    One package at a time is in memory, so `packages` may be rendered meanwhile. Raises as `write` does.
+    The files of `targets` change with them, all or none. One package at a time is in memory, so `packages`
+    may be rendered meanwhile. Raises as `write` does.
     """
-    with transaction.staging(directory) as stage:
-        plans = _plan_all(packages, directory, generator, stage.put)
-        yield lambda: _apply(plans, directory, stage)
+    with ExitStack() as stages:
+        folders: list[_Folder] = []
+        for folder, contents in ((directory, packages), *((t.directory, [t.package]) for t in targets)):
+            stage = stages.enter_context(transaction.staging(folder))
+            folders.append(_Folder(folder, stage, _plan_all(contents, folder, generator, stage.put)))
+        if targets:
+            _refuse_same_paths((folder.directory, folder.plans) for folder in folders)
+        yield lambda: _apply(folders)
 
 
-def _apply(plans: list[_Plan[Path]], directory: Path, stage: transaction.Stage) -> Written:
-    edited = {path: data for plan in plans for path, data in plan.edited.items()}
-    aside = ((path, stage.put(data)) for path, data in _set_aside(edited, directory))
-    changes = [*aside, *(change for plan in plans for change in _changes(plan, stage))]
-    if changes:
-        stage.apply(changes)
+@dataclass(frozen=True, slots=True)
+class _Folder:
+    """The changes to come in a folder, and the stage with the new contents."""
+
+    directory: Path
+    stage: transaction.Stage
+    plans: list[_Plan[Path]]
+
+    def changes(self) -> list[tuple[Path, Path | None]]:
+        """The changes in order."""
+        edited = {path: data for plan in self.plans for path, data in plan.edited.items()}
+        aside = ((path, self.stage.put(data)) for path, data in _set_aside(edited, self.directory))
+        return [*aside, *(change for plan in self.plans for change in _changes(plan, self.stage))]
+
+
+def _apply(folders: Sequence[_Folder]) -> Written:
+    changes = [(folder.stage, folder.changes()) for folder in folders]
+    transaction.apply_all((stage, made) for stage, made in changes if made)
+    plans = [plan for folder in folders for plan in folder.plans]
+    edited = [path for plan in plans for path in plan.edited]
     for plan in plans:
         _tidy(plan)
     return Written(
@@ -132,19 +167,42 @@ def _apply(plans: list[_Plan[Path]], directory: Path, stage: transaction.Stage) 
     )
 
 
-def drift(packages: Iterable[OutputPackage], directory: Path) -> tuple[Drift, ...]:
-    """The differences between `directory` and the result of `write`.
+def drift(
+    packages: Iterable[OutputPackage], directory: Path, targets: Sequence[TargetFolder] = ()
+) -> tuple[Drift, ...]:
+    """The differences between `directory` and `targets` and the result of `write`.
 
     Writes nothing, and raises as `write` does.
     """
-    plans = _plan_all(packages, directory, "", lambda data: data)
     drifts: list[Drift] = []
-    for plan in plans:
-        drifts.extend(Drift(path, _text(path), data.decode()) for path, data in plan.changed.items())
-        drifts.extend(Drift(path, _text(path), None) for path in (*plan.stale, *plan.kept))
-    left_over = transaction.left_over(directory, alone=locking.is_free(directory))
-    drifts.extend(Drift(path, "", None) for path in left_over)
+    folders: list[tuple[Path, list[_Plan[bytes]]]] = []
+    for folder, contents in ((directory, packages), *((t.directory, [t.package]) for t in targets)):
+        plans = _plan_all(contents, folder, "", lambda data: data)
+        folders.append((folder, plans))
+        for plan in plans:
+            changed = plan.changed.items()
+            drifts.extend(Drift(path, _text(path), data.decode(errors="replace")) for path, data in changed)
+            drifts.extend(Drift(path, _text(path), None) for path in (*plan.stale, *plan.kept))
+        if folder.is_dir():
+            left_over = transaction.left_over(folder, alone=locking.is_free(folder))
+            drifts.extend(Drift(path, "", None) for path in left_over)
+    if targets:
+        _refuse_same_paths(folders)
     return tuple(sorted(drifts, key=lambda d: d.path))
+
+
+def _refuse_same_paths(folders: Iterable[tuple[Path, Sequence[_Plan[Any]]]]) -> None:
+    """Raise InputError for a file that two folders have."""
+    known: dict[str, int] = {}
+    problems: list[Diagnostic] = []
+    for number, (directory, plans) in enumerate(folders):
+        for path in (path for plan in plans for path in files_of(plan.folder, directory, plan.new)):
+            if known.setdefault(str(path.absolute()).casefold(), number) != number:
+                message = f"{shown_path(path)} would be written twice, by a target and by another or by ifgen"
+                advice = "choose another `out` for one of them"
+                problems.append(Diagnostic("same-path", message, help=advice))
+    if problems:
+        raise InputError(problems)
 
 
 def set_aside(path: Path, directory: Path) -> Path:
@@ -196,8 +254,8 @@ def _plan(
     package: OutputPackage, directory: Path, generator: str, keep: Callable[[bytes], Kept]
 ) -> _Plan[Kept]:
     folder = directory / package.name
-    old = _old_manifest(folder)
-    texts = {folder / name: text for name, text in package.files.items()}
+    old = _old_manifest(folder, package.manifest)
+    texts: dict[Path, str | bytes] = {folder / name: text for name, text in package.files.items()}
     texts |= {directory / name: text for name, text in package.beside.items()}
     once = {folder / name: text for name, text in package.once.items()}
     problems = list(_outside(folder, directory, [*texts, *once]))
@@ -207,7 +265,7 @@ def _plan(
     digests: dict[Path, str] = {}
     ours = files_of(folder, directory, old)
     for path, text in texts.items():
-        data = text.encode()
+        data = text.encode() if isinstance(text, str) else text
         digests[path] = manifest.digest(data)
         found = _contents(path) if path.is_file() else None
         if found == data:
@@ -234,14 +292,14 @@ def _plan(
         {name: digests[directory / name] for name in package.beside},
         tuple(sorted(package.once)),
     )
-    return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept, edited)
+    return _Plan(folder, old, new, changed, tuple(unchanged), stale, kept, edited, package.manifest)
 
 
-def _old_manifest(folder: Path) -> Manifest:
+def _old_manifest(folder: Path, name: str = manifest.NAME) -> Manifest:
     try:
-        return manifest.read(folder) or Manifest()
+        return manifest.read(folder, name) or Manifest()
     except ValueError as error:
-        message = f"{shown_path(folder / manifest.NAME)} is broken: {error}"
+        message = f"{shown_path(folder / name)} is broken: {error}"
         advice = "restore it, or delete the folder and generate it again"
         raise InputError([Diagnostic("broken-manifest", message, help=advice)]) from None
 
@@ -297,7 +355,7 @@ def _changes(plan: _Plan[Path], stage: transaction.Stage) -> Iterator[tuple[Path
     Until the end it has the old digests, so a file that has not been reached is not mistaken for an edited
     one. The next run generates the same new files.
     """
-    record = plan.folder / manifest.NAME
+    record = plan.folder / plan.manifest
     both = replace(
         plan.new,
         files={**plan.new.files, **plan.old.files},

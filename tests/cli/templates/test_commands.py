@@ -42,7 +42,8 @@ def test_list_names_what_there_is(ifgen: Run, project: Path) -> None:
         "\n"
         "doc.md.j2\n"
         "  makes   docs/{package}/{interface:snake}.md, output 'docs'\n"
-        "  given   interface: Interface, package: Package\n"
+        "  given   interface: Interface, package: Package, model: Model, options:\n"
+        "          Mapping[str, Any]\n"
         "  yours   templates/doc.md.j2\n"
     )
     assert ifgen("templates", "list", "message_package").out.count("\n\n") > 5

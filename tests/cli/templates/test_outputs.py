@@ -319,6 +319,7 @@ def test_an_output_in_the_place_of_a_users_node(ifgen: Run, project: Path) -> No
     write(project / "interfaces/robot/nodl/talker.nodl.yaml", NODE)
     text = PYPROJECT.replace('path = "{package}/about.txt"', 'path = "{import_folder}/talker.py"')
     write(project / "pyproject.toml", text)
+    write(project / "templates/about.txt.j2", "")
     done = ifgen("generate")
     assert (
         done.code,

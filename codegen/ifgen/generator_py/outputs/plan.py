@@ -49,14 +49,17 @@ def plan_outputs(
     outputs: Sequence[Output],
     packages: Sequence[Package],
     import_folders: Mapping[str, str],
+    variables: Mapping[str, object],
     *,
     partial: bool = False,
+    own_folder: bool = False,
 ) -> tuple[PlannedOutput, ...]:
     """The files that outputs are for these packages.
 
     `import_folders` maps packages to the folders that Python imports, where these are not called as they are.
-    In a `partial` run outputs may match nothing, and those of runs are left out. Raises InputError for
-    patterns that are wrong, match nothing, or give two files one path.
+    All get these `variables`, besides their own. In a `partial` run outputs may match nothing, and those of
+    runs are left out. Those of a generator have their `own_folder`, and may match nothing, too. Raises
+    InputError for patterns that are wrong, match nothing, or give two files one path.
     """
     planned: list[PlannedOutput] = []
     problems: list[Diagnostic] = []
@@ -68,13 +71,14 @@ def plan_outputs(
             problems.append(problem)
             continue
         picked = [view for package in packages if (view := _picked(package, output.only)) is not None]
-        files = list(_files(output, picked, import_folders))
+        files = list(_files(output, picked, import_folders, variables))
         planned += files
-        if not partial:
+        if not partial and not own_folder:
             problems += _idle_patterns(output, packages)
             if not files:
                 problems.append(_matches_nothing(output))
-        problems += filter(None, (_wrong_path(file, packages) for file in files))
+        others = () if own_folder else packages
+        problems += filter(None, (_wrong_path(file, others) for file in files))
     problems += _collisions(planned)
     if problems:
         raise InputError(problems)
@@ -82,26 +86,29 @@ def plan_outputs(
 
 
 def _files(
-    output: Output, packages: Sequence[Package], import_folders: Mapping[str, str]
+    output: Output,
+    packages: Sequence[Package],
+    import_folders: Mapping[str, str],
+    common: Mapping[str, object],
 ) -> Iterator[PlannedOutput]:
     if output.per == "run":
         if packages:
-            yield _planned(output, None, {}, {"packages": tuple(packages)})
+            yield _planned(output, None, {}, {**common, "packages": tuple(packages)})
         return
     for package in packages:
         fields = {"package": package.name, "import_folder": import_folders.get(package.name, package.name)}
         match output.per:
             case "package":
-                yield _planned(output, package.name, fields, {"package": package})
+                yield _planned(output, package.name, fields, {**common, "package": package})
             case "interface":
                 for interface in package.interfaces:
                     named = {**fields, "folder": interface.folder, "interface": interface.name}
-                    variables = {"interface": interface, "package": package}
+                    variables = {**common, "interface": interface, "package": package}
                     yield _planned(output, package.name, named, variables)
             case "node":
                 for node in package.nodes:
                     named = {**fields, "node": node.name}
-                    yield _planned(output, package.name, named, {"node": node, "package": package})
+                    yield _planned(output, package.name, named, {**common, "node": node, "package": package})
 
 
 def _planned(
@@ -111,7 +118,7 @@ def _planned(
         text + ("" if field is None else snake_case(fields[field]) if form else fields[field])
         for text, field, form, _ in Formatter().parse(output.path)
     )
-    return PlannedOutput(output, package, Artifact(path, output.template, variables))
+    return PlannedOutput(output, package, Artifact(path, output.template, variables, is_output=True))
 
 
 def _picked(package: Package, only: Sequence[str]) -> Package | None:

@@ -6,6 +6,7 @@ shown as values, as JSON, and as a JSON schema.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
@@ -181,7 +182,7 @@ def listed(custom: Customization) -> tuple[Listed, ...]:
 
 def type_name(type_: object) -> str:
     """A type as a reader wants to see it: `InterfaceModule`, `tuple[Package, ...]`."""
-    return type_.__name__ if isinstance(type_, type) else str(type_).replace("ifgen.model.interfaces.", "")
+    return type_.__name__ if isinstance(type_, type) else re.sub(r"\b[a-z_.]+\.(?=\w)", "", str(type_))
 
 
 def _ours(

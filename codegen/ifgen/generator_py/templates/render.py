@@ -5,19 +5,22 @@ from __future__ import annotations
 import json
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import jinja2
 
 from ifgen import resources
 from ifgen.config.customization import Customization
 from ifgen.definition.names import snake_case
-from ifgen.diagnostics import Diagnostic, InputError
+from ifgen.diagnostics import Diagnostic, InputError, shorten
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.imports import gathered
-from ifgen.generator_py.templates.filters import explained, load
+from ifgen.generator_py.templates.filters import at_line, explained, load
 from ifgen.model import plain
 from ifgen.writing import cache as kept
+
+if TYPE_CHECKING:
+    from ifgen.generator_py.templates.parsed import Broken, TemplateLine
 
 
 class Templates:
@@ -52,7 +55,29 @@ class Templates:
             text = gathered(text, artifact.own_package)
         if not text.isascii():
             self._check_encoding(text, artifact)
+        if artifact.is_output:
+            self._check_syntax(text, artifact)
         return OutputFile(artifact.path, text)
+
+    def _check_syntax(self, text: str, artifact: Artifact) -> None:
+        from ifgen.generator_py.templates import parsed  # few runs have outputs
+
+        if found := parsed.broken(artifact.path, text):
+            place = parsed.template_line(
+                self._environment, artifact.template, artifact.variables, text, found.line
+            )
+            raise InputError([self._broken(artifact, text, found, place)])
+
+    def _broken(self, artifact: Artifact, text: str, found: Broken, place: TemplateLine | None) -> Diagnostic:
+        name, line = place or (artifact.template, 1)
+        path = next((p for folder in reversed(self._custom.folders) if (p := folder / name).is_file()), None)
+        shown = text.splitlines()[found.line - 1 : found.line]
+        return Diagnostic(
+            "broken-output",
+            f"template {name} makes a broken file: {artifact.path}:{found.line}: {found.reason}",
+            None if path is None else at_line(path, line, "from here" if place else "from this template"),
+            help=f"the line in the file is `{shorten(shown[0].strip())}`" if shown else None,
+        )
 
     @staticmethod
     def _check_encoding(text: str, artifact: Artifact) -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 from ifgen.generator_py.adapters import AdapterModule, AdapterPackage, AdapterTests, FrozenModule
 from ifgen.generator_py.messages.context import FolderModule, InterfaceModule, PackageModule, ProjectFile
@@ -20,7 +20,7 @@ from ifgen.generator_py.nodes.context import (
     ParametersModule,
 )
 from ifgen.generator_py.tests.context import InterfaceTests, NodeTests, OwnTests, TestSupport
-from ifgen.model import Interface, Node, Package
+from ifgen.model import Interface, Model, Node, Package
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,10 +76,12 @@ TEMPLATES: Final[Mapping[str, Entry]] = {
 }
 """ifgen's own."""
 
+_OF_ALL = {"model": Model, "options": Mapping[str, Any]}
+
 OUTPUT_VARIABLES: Final[Mapping[str, Mapping[str, object]]] = {
-    "package": {"package": Package},
-    "interface": {"interface": Interface, "package": Package},
-    "node": {"node": Node, "package": Package},
-    "run": {"packages": tuple[Package, ...]},
+    "package": {"package": Package, **_OF_ALL},
+    "interface": {"interface": Interface, "package": Package, **_OF_ALL},
+    "node": {"node": Node, "package": Package, **_OF_ALL},
+    "run": {"packages": tuple[Package, ...], **_OF_ALL},
 }
 """The variables of the templates of `[tool.ifgen.outputs]`, by the `per` of their output."""

@@ -40,6 +40,7 @@ class Fingerprints:
         self._packages = {package.name: _of_package(package, self._search) for package in request.packages}
         self._users = _of_users_modules(request.packages, self._output)
         self._generator = of_generator(resources.templates()) + _of_customization(request.custom)
+        self._targets = _of_targets(request.custom)
         self._ours: set[str] = set()  # only pip needs to know what is generated beside a package
         if request.custom.distributions is not None:
             self._ours = self._packages.keys() | request.previous.keys() - {ROOT}
@@ -76,13 +77,14 @@ class Fingerprints:
         needs, modules = Needs(resolved.registries), self.of_modules(resolved.registry)
         return {target.name: self._record(target, needs, modules) for target in resolved.targets}
 
-    def of_run(self, records: Iterable[PackageRecord], root: Mapping[str, Manifest]) -> str:
+    def of_run(self, records: Iterable[PackageRecord], others: Iterable[Manifest]) -> str:
         """The digest of the sources of packages, of the users' modules, and of what is made once in a run."""
         hasher = hashlib.sha256("\n".join(recorded.inputs for recorded in records).encode())
         for path, digest in sorted(self._users.items()):
             hasher.update(path.encode(errors="surrogateescape") + digest)
-        for found in root.values():
+        for found in others:
             hasher.update(found.digest.encode())
+        hasher.update(self._targets)
         return hasher.hexdigest()
 
     def of_modules(self, registry: Registry) -> Mapping[str, str]:
@@ -217,7 +219,8 @@ def _of_source(source: Source) -> bytes:
 def _of_customization(custom: Customization) -> bytes:
     """The digest of all the user's additions, empty if there are none."""
     is_for_old = is_old(custom.ros_distro)
-    if custom == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_for_old:
+    of_python = replace(custom, targets=(), python=True)
+    if of_python == Customization(partial=custom.partial, ros_distro=custom.ros_distro) and not is_for_old:
         return b""
     values = (
         custom.outputs,
@@ -231,6 +234,22 @@ def _of_customization(custom: Customization) -> bytes:
     for path in (*paths, *([custom.filters] if custom.filters else ())):
         if path.is_file():
             hasher.update(_named(str(path), _of_text(read_limited(path, MAX_GENERATED))))
+    return hasher.digest()
+
+
+def _of_targets(custom: Customization) -> bytes:
+    """The digest of the generators of a run, of their options, and of their code."""
+    if not custom.targets or custom.partial:
+        return b"" if custom.python else b"no Python"
+    from ifgen.pipeline.generators.find import sources  # of use to few
+
+    hasher = hashlib.sha256(repr((custom.python, custom.targets)).encode(errors="surrogateescape"))
+    for target in custom.targets:
+        hasher.update(str(target.base).encode(errors="surrogateescape"))
+        for place in sources(target):
+            files = _files_below(place) if place.is_dir() else [(place.parent, place)]
+            for _, path in files:
+                hasher.update(_named(str(path), path.read_bytes()))
     return hasher.digest()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TypeVar
 
 from ifgen import signals
@@ -79,28 +80,35 @@ class _State:
             name = pending.pop()
             recorded, found = self.record.packages.get(name), request.previous.get(name)
             # Another ifgen may have generated there since.
-            if recorded is None or found is None or found.digest != recorded.manifest:
+            if recorded is None or (found.digest if found else "") != recorded.manifest:
                 continue
-            if found.source == sources.get(name) and self.fingerprints.match(name, recorded):
-                current[name] = found
+            if found is None and request.custom.python:
+                continue
+            is_same = found is None or found.source == sources.get(name)
+            if is_same and self.fingerprints.match(name, recorded):
+                current[name] = found or Manifest()
                 needs = {type_name.partition("/")[0] for type_name in recorded.needed}
                 along = {n for n in needs - names if search.comes_along(n, request.with_deps)}
                 needed |= needs
                 names |= along
                 pending += along
-        root = self._root(request.previous)
+        root, targets = self._root(request.previous), self._targets()
         intact = {
             name: found
             for name, found in {**current, **root}.items()
             if write.is_intact(found, request.output / name, request.output)
         }
         result = None
-        if intact.keys() == names | root.keys():
+        if intact.keys() == names | root.keys() and targets is not None:
             records = [self.record.packages[name] for name in sorted(names)]
-            inputs = self.fingerprints.of_run(records, root)
+            inputs = self.fingerprints.of_run(records, [*root.values(), *targets.values()])
             diagnostics = self.record.diagnostics_of(self.fingerprints.request, inputs)
             if diagnostics is not None:
-                result = BuildResult((), intact.keys(), needed - intact.keys(), diagnostics, intact)
+                generated = intact if request.custom.python else {}
+                missing = needed - intact.keys() if request.custom.python else ()
+                result = BuildResult(
+                    (), generated.keys(), missing, diagnostics, generated, skipped_targets=targets
+                )
         return UpToDate({name: m for name, m in intact.items() if name != write.ROOT}, self, result)
 
     def module(self, interface: Interface, registry: Registry, path: str) -> str | None:
@@ -125,9 +133,22 @@ class _State:
             name: replace(sources, manifest=manifests[name].digest if name in manifests else "")
             for name, sources in fingerprints.records(resolved).items()
         }
-        inputs = fingerprints.of_run([records[name] for name in sorted(records)], self._root(manifests))
+        others = [*self._root(manifests).values(), *(self._targets() or {}).values()]
+        inputs = fingerprints.of_run([records[name] for name in sorted(records)], others)
         after = replace(self.record, packages={**self.record.packages, **records})
         return after.with_run(fingerprints.request, inputs, diagnostics)
+
+    def _targets(self) -> dict[Path, Manifest] | None:
+        """The manifests of the folders of targets; None if one of them is not as it was written."""
+        custom, found = self.request.custom, dict[Path, Manifest]()
+        for target in () if custom.partial else custom.targets:
+            with suppress(OSError, ValueError):
+                read = manifest.read(target.out, manifest.TARGETS)
+                if read is not None and write.is_intact(read, target.out, target.out):
+                    found[target.out] = read
+            if target.out not in found:
+                return None
+        return found
 
     def _root(self, manifests: Mapping[str, Manifest]) -> dict[str, Manifest]:
         """The manifest of what is made once in a run, if this run makes that."""

@@ -1,0 +1,1 @@
+"""Runs the generators of `[tool.ifgen.generate]`: finds them, gives them the model, checks their files."""
