@@ -45,7 +45,7 @@ def test_a_failure_names_the_field(tmp_path: Path) -> None:
     assert run([str(tmp_path / "main")]).splitlines() == [
         "name[1]: a string ends at its NUL on the wire",
         "the message needs more room",
-        "effort: the payload ends before the message",
+        "velocity: the payload ends before the message",
         "name: a sequence is longer than what is left of the payload",
         "expected plain CDR: a header 0000 or 0001",
         "std_srvs/srv/SetBool",
