@@ -39,7 +39,9 @@ def number(value: Value, type_: FieldType) -> str | None:
             return None
         case primitive:
             digits, suffix = str(int(value.value)), _SUFFIXES.get(primitive, "")
-            if int(digits) == _SMALLEST.get(primitive):  # its digits, without the sign, are beyond the largest one
+            if int(digits) == _SMALLEST.get(
+                primitive
+            ):  # its digits, without the sign, are beyond the largest one
                 return f"({int(digits) + 1}{suffix} - 1)"
             return digits + suffix
 
@@ -79,10 +81,21 @@ def generated(model: Model) -> Iterator[Interface]:
 def generated_packages(model: Model) -> list[Package]:
     """The packages with interfaces that are asked for, and these alone."""
     packages = (
-        replace(package, interfaces=tuple(interface for interface in package.interfaces if interface.generate))
+        replace(
+            package, interfaces=tuple(interface for interface in package.interfaces if interface.generate)
+        )
         for package in model.packages
     )
     return [package for package in packages if package.interfaces]
+
+
+def needed(model: Model) -> list[Message]:
+    """The messages that are asked for and all that these hold, each after those that it needs."""
+    names = {message.type_name for message in model.types if message.generate}
+    for message in reversed(model.types):
+        if message.type_name in names:
+            names.update(message.dependencies)
+    return [message for message in model.types if message.type_name in names]
 
 
 def path(interface: Interface, suffix: str) -> str:
@@ -99,8 +112,10 @@ def includes(interface: Interface, suffix: str) -> list[str]:
 
 
 def guard(interface: Interface, suffix: str) -> list[str]:
-    """Lines that refuse rosidl's header of the same name: two types of one name in one program are an error."""
-    macro = f"{interface.package}__{interface.folder}__detail__{interface.snake_name}__struct_{suffix}_".upper()
+    """Lines that refuse the header of rosidl that defines the same types."""
+    macro = (
+        f"{interface.package}__{interface.folder}__detail__{interface.snake_name}__struct_{suffix}_".upper()
+    )
     words = f"{path(interface, suffix)} of rosidl and of ifgen cannot be in one program"
     return [f"#ifdef {macro}", f'#error "{words}: remove one from the include path"', "#endif", ""]
 

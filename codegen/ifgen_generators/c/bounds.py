@@ -33,10 +33,12 @@ class Unbounded:
 
 
 class Bounds:
-    """The room of each field. Keys are `pkg/msg/Name.field`, and `pkg/msg/Name.field[]` for the elements of an array
-    or a sequence of strings. Either part may be a pattern, and `*.string`, `*.wstring` and `*.sequence` stand for
-    all fields of a kind. A key that names one field wins over patterns, of which the first that matches counts; these
-    do not change what an interface bounds itself.
+    """The room of each field.
+
+    Keys are `pkg/msg/Name.field`, and `pkg/msg/Name.field[]` for the strings of an array or a sequence.
+    Either part may be a pattern, and `*.string`, `*.wstring` and `*.sequence` stand for all fields of a kind.
+    A key that names one field wins over patterns, of which the first that matches counts. Patterns do not
+    change what an interface bounds itself.
     """
 
     def __init__(self, bounds: Mapping[str, int]) -> None:
@@ -47,12 +49,14 @@ class Bounds:
         self.unused = {key for key in bounds if not any(character in key for character in "*?")}
 
     def add(self, message: Message) -> None:
-        """Find the room for the fields of a message. What has none is `unbounded`, defaults without room `overflowing`."""
+        """Find the room for the fields of a message: `unbounded` and `overflowing` have too little."""
         for field in message.fields:
             room = self._rooms[field.id] = Room(self._elements(message, field), self._text(message, field))
             values = field.default_elements or ((field.default_value,) if field.default_value else ())
             lengths = (_length(str(value.value), field.type.primitive) for value in values)
-            if len(values) > (room.elements or 1) or (room.text is not None and max(lengths, default=0) > room.text):
+            if len(values) > (room.elements or 1) or (
+                room.text is not None and max(lengths, default=0) > room.text
+            ):
                 self.overflowing.append(field)
 
     def of(self, field: Field) -> Room:
@@ -85,7 +89,9 @@ class Bounds:
             return declared
         for key in self._patterns():
             owner, _, of = key.rpartition(".")
-            if fnmatchcase(message.type_name, owner) and (of == kind or fnmatchcase(name, of.replace("[", "[[]"))):
+            if fnmatchcase(message.type_name, owner) and (
+                of == kind or fnmatchcase(name, of.replace("[", "[[]"))
+            ):
                 return self._bounds[key]
         self.unbounded.append(Unbounded(field, exact, f"*.{kind}"))
         return 1

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from ifgen.model import Field, Message, Model, safe_name
+from ifgen.model import Field, Message, safe_name
+
 from ifgen_generators.c.bounds import MAX_CHARACTERS, Bounds
 
 _COUNT_SIZE: Final = 4
@@ -42,12 +43,12 @@ class Numbers:
 class Tables:
     """The rows of messages, and the most bytes that these take on the wire."""
 
-    def __init__(self, model: Model, bounds: Bounds) -> None:
-        self._types = {message.type_name: message for message in model.types}
+    def __init__(self, types: Sequence[Message], bounds: Bounds) -> None:
+        self._types = {message.type_name: message for message in types}
         self._bounds = bounds
         self._numbers: dict[str, Numbers | None] = {}
         self._depths: dict[str, int] = {}
-        for message in model.types:
+        for message in types:
             self._numbers[message.type_name] = self._only_numbers(message)
             self._depths[message.type_name] = self._depth(message)
 
@@ -176,7 +177,9 @@ class _Position:
     def after(self, alignment: int, size: int) -> _Position:
         if self.modulus >= alignment:
             padding = -self.remainder % alignment
-            start = replace(self, size=self.size + padding, remainder=(self.remainder + padding) % self.modulus)
+            start = replace(
+                self, size=self.size + padding, remainder=(self.remainder + padding) % self.modulus
+            )
         else:
             start = _Position(self.size + alignment - 1, alignment, 0)
         return replace(start, size=start.size + size, remainder=(start.remainder + size) % start.modulus)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from struct import iter_unpack
 
 from ifgen.model import Constant, Field, FieldType, Interface, Message, Model, Value
+
 from ifgen_generators import c_family
 from ifgen_generators.c.bounds import Bounds
 from ifgen_generators.c.rows import Row, Tables, c_name
@@ -159,7 +160,10 @@ class Sources:
 
 def comment(text: str, unit: str | None = None, indent: str = "") -> Iterator[str]:
     """A comment."""
-    lines = [*text.replace("*/", "* /").replace("/*", "/ *").splitlines(), *([f"Unit: {unit}"] if unit else [])]
+    lines = [
+        *text.replace("*/", "* /").replace("/*", "/ *").splitlines(),
+        *([f"Unit: {unit}"] if unit else []),
+    ]
     if lines:
         yield f"{indent}/* " + f"\n{indent} * ".join(line.rstrip(" \\") for line in lines) + " */"
 

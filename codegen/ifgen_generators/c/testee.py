@@ -1,10 +1,11 @@
-"""The testee of the conformance suite: tables of the fields of all types, for a program that is the same for all."""
+"""The testee of the conformance suite: tables of all fields, for a program that is always the same."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
 from ifgen.model import Constant, Field, Interface, Message, Model, Package
+
 from ifgen_generators import c_family
 from ifgen_generators.c.rows import c_name
 
@@ -98,23 +99,22 @@ def _constant(constant: Constant, owner: str) -> str:
     width = (constant.type.bits or 0) // 8
     match primitive:
         case "string":
-            return f'{{"{constant.name}", \'z\', 0, &{name}}}'
+            return f"{{\"{constant.name}\", 'z', 0, &{name}}}"
         case "wstring":
-            return f'{{"{constant.name}", \'w\', 0, {name}}}'
+            return f"{{\"{constant.name}\", 'w', 0, {name}}}"
         case "float32" | "float64" | "uint32" | "int64" | "uint64":
             value = f"&{name}"
         case _:
             value = f"&(const {c_family.C_TYPES[primitive]}){{{name}}}"
-    return f'{{"{constant.name}", \'{_kind(primitive)}\', {width}, {value}}}'
+    return f"{{\"{constant.name}\", '{_kind(primitive)}', {width}, {value}}}"
 
 
 def _types(interface: Interface) -> Iterable[str]:
     for message in interface.types:
         name = c_name(message)
-        yield (
-            f"{{{name}_TYPE_NAME, {name}_TYPE_HASH, sizeof({name}), {name}_MAX_SIZE, {name}_rows, {name}_fields, "
-            f"{name}_testee, {name}_set, {name}_constants}}"
-        )
+        sizes = f"sizeof({name}), {name}_MAX_SIZE"
+        tables = ", ".join(f"{name}_{table}" for table in ("rows", "fields", "testee", "set", "constants"))
+        yield f"{{{name}_TYPE_NAME, {name}_TYPE_HASH, {sizes}, {tables}}}"
     named = [service.name for service in interface.services] + [interface.name] * (interface.kind == "action")
     for of in named:
         name = f"{interface.package}__{interface.folder}__{of}"

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from ifgen.generators import File, Generator, Option, Request, Response
+
 from ifgen_generators import c_family
 from ifgen_generators.cpp.headers import Headers
 from ifgen_generators.cpp.testee import testee

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from ifgen.model import Constant, Field, FieldType, Interface, Message, Model, TypeReference, Value, safe_name
+
 from ifgen_generators import c_family
 
 _LONGEST_RUN: Final = 64
@@ -15,9 +16,10 @@ _LONGEST_RUN: Final = 64
 _COUNT_SIZE: Final = 4
 
 # Macros of system headers that constants of messages are named after.
-_MACROS: Final = frozenset(
-    "DEBUG DELETE DOMAIN EOF ERROR FALSE FATAL INFO NAN NONE NULL OK OVERFLOW TRUE UNDERFLOW UNKNOWN WARN".split()
-)
+_MACROS: Final = {
+    "DEBUG", "DELETE", "DOMAIN", "EOF", "ERROR", "FALSE", "FATAL", "INFO", "NAN", "NONE", "NULL", "OK",
+    "OVERFLOW", "TRUE", "UNDERFLOW", "UNKNOWN", "WARN",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +85,8 @@ class Headers:
         left, right = ("left", "right") if names else ("", "")
         yield f"  friend bool operator==(const {name} & {left}, const {name} & {right})\n  {{"
         yield f"    return {_joined([f'left.{each} == right.{each}' for each in names]) or 'true'};\n  }}"
-        yield f"  friend bool operator!=(const {name} & left, const {name} & right) {{return !(left == right);}}"
+        yield f"  friend bool operator!=(const {name} & left, const {name} & right)"
+        yield "  {\n    return !(left == right);\n  }"
         yield "};"
         yield from (f'#pragma pop_macro("{macro}")' for macro in macros)
         yield from _end_of_namespace(message.package, message.folder)
@@ -117,15 +120,16 @@ class Headers:
 
     def _plain(self, message: Message) -> _Layout | None:
         """The layout of a message without padding, and so the same wherever its start is aligned."""
-        layouts = [self._layout(field.type) for field in message.fields]
-        first = layouts[0] if layouts else None
-        size = 0
-        for field, layout in zip(message.fields, layouts, strict=True):
-            is_plain = layout is not None and first is not None and field.type.primitive != "bool"
-            if not is_plain or layout.alignment > first.alignment or size % layout.alignment:
+        alignment = size = 0
+        for field in message.fields:
+            layout = self._layout(field.type)
+            if layout is None or field.type.primitive == "bool":
+                return None
+            alignment = alignment or layout.alignment
+            if layout.alignment > alignment or size % layout.alignment:
                 return None
             size += layout.size
-        return _Layout(first.alignment, size) if first and size % first.alignment == 0 else None
+        return _Layout(alignment, size) if size and size % alignment == 0 else None
 
     def _fewest(self, field: Field) -> int:
         """The fewest bytes that a field takes, wherever it starts: without padding."""
@@ -238,7 +242,11 @@ def _services(interface: Interface) -> Iterator[str]:
     for service in interface.services:
         yield from _namespace(package, folder)
         yield f"struct {service.name}\n{{"
-        for part, type_name in (("Request", service.request), ("Response", service.response), ("Event", service.event)):
+        for part, type_name in (
+            ("Request", service.request),
+            ("Response", service.response),
+            ("Event", service.event),
+        ):
             yield f"  using {part} = {type_name.rpartition('/')[2]};"
         yield "};"
         yield from _end_of_namespace(package, folder)

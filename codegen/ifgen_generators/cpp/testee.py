@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ifgen.model import Interface, Model, Package, safe_name
+
 from ifgen_generators import c_family
 from ifgen_generators.cpp.headers import qualified
 
@@ -47,12 +48,17 @@ def _package(package: Package) -> str:
 def _interface(interface: Interface) -> Iterator[str]:
     for message in interface.types:
         name = qualified(message)
-        constants = (
-            f'{{"{constant.name}", text_of({name}::{constant.names["cpp"]})}}' for constant in message.constants
+        constants = ", ".join(
+            f'{{"{constant.name}", text_of({name}::{constant.names["cpp"]})}}'
+            for constant in message.constants
         )
-        yield f'  types["{message.type_name}"] = {{ifgen::type_hash<{name}>, answer<{name}>, {{{", ".join(constants)}}}}};'
+        yield _type(message.type_name, name, f"answer<{name}>", constants)
     names = [service.name for service in interface.services]
     names += [interface.name] if interface.kind == "action" else []
     for of in names:
         name = f"::{safe_name(interface.package, 'cpp')}::{interface.folder}::{of}"
-        yield f'  types["{interface.package}/{interface.folder}/{of}"] = {{ifgen::type_hash<{name}>, nullptr, {{}}}};'
+        yield _type(f"{interface.package}/{interface.folder}/{of}", name, "nullptr", "")
+
+
+def _type(type_name: str, name: str, answer: str, constants: str) -> str:
+    return f'  types["{type_name}"] = {{ifgen::type_hash<{name}>, {answer}, {{{constants}}}}};'

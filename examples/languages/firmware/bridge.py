@@ -23,12 +23,16 @@ def main() -> None:
     rclpy.init()
     node = rclpy.create_node("bridge")
     received = []
-    node.create_subscription(Imu, "imu", lambda m: received.append(f"{m.header.frame_id} {m.linear_acceleration.z}"), 10)
+    node.create_subscription(
+        Imu, "imu", lambda m: received.append(f"{m.header.frame_id} {m.linear_acceleration.z}"), 10
+    )
     node.create_subscription(
         JointState, "joint_states", lambda m: received.append(f"{list(m.name)} {list(m.position)}"), 10
     )
     publishers = {topic: node.create_publisher(cls, topic, 10) for topic, cls in TYPES.items()}
-    lines = subprocess.run([*EMULATOR, str(FIRMWARE)], capture_output=True, text=True, timeout=60, check=True).stdout
+    lines = subprocess.run(
+        [*EMULATOR, str(FIRMWARE)], capture_output=True, text=True, timeout=60, check=True
+    ).stdout
     for line in lines.splitlines():
         topic, payload = line.split()
         publishers[topic].publish(bytes.fromhex(payload))

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +35,11 @@ def load(*paths: Path) -> Model:
 def generate(generator: Generator, model: Model, **options: Any) -> Response:
     """What a generator makes of a model."""
     defaults: Mapping[str, Any] = {option.name: option.default for option in generator.options}
-    return generator.generate(Request(model, {**defaults, **options}, "test")) if generator.generate else Response()
+    return (
+        generator.generate(Request(model, {**defaults, **options}, "test"))
+        if generator.generate
+        else Response()
+    )
 
 
 def write(response: Response, folder: Path) -> Path:
@@ -48,11 +53,13 @@ def write(response: Response, folder: Path) -> Path:
     return folder
 
 
-def build(folder: Path, compiler: Sequence[str], suffix: str, program: Path, link: Sequence[str] = ()) -> Path:
+def build(
+    folder: Path, compiler: Sequence[str], suffix: str, program: Path, link: Sequence[str] = ()
+) -> Path:
     """Compile all files with this suffix, each on its own, and link them. Fails with what the compiler wrote."""
     sources = sorted(folder.rglob(f"*{suffix}"))
     with ThreadPoolExecutor(2) as pool:
-        objects = list(pool.map(lambda source: _object(folder, compiler, source), sources))
+        objects = list(pool.map(partial(_object, folder, compiler), sources))
     run([*compiler, *link, *map(str, objects), "-o", str(program)])
     return program
 

@@ -106,7 +106,9 @@ def test_the_suite_passes_on_a_big_endian_processor(everything: Model, tmp_path:
 @pytest.mark.parametrize("processor", ["cortex-m0", "cortex-m4"])
 def test_a_message_takes_less_than_500_bytes_of_flash(tmp_path: Path, processor: str) -> None:
     compiler = [needs("arm-none-eabi-gcc"), f"-mcpu={processor}", *CORTEX, *STRICT, f"-I{tmp_path}", "-c"]
-    write(generate(GENERATOR, load(ROOT / "interfaces/sensor_msgs"), bounds={**EVERYTHING, **ROBOT}), tmp_path)
+    write(
+        generate(GENERATOR, load(ROOT / "interfaces/sensor_msgs"), bounds={**EVERYTHING, **ROBOT}), tmp_path
+    )
     for source, most in (
         ("sensor_msgs/msg/imu.c", 500),
         ("sensor_msgs/msg/joint_state.c", 500),
@@ -125,7 +127,12 @@ def test_a_microcontroller_publishes_what_python_reads(tmp_path: Path) -> None:
     needs("arm-none-eabi-gcc")
     needs("qemu-system-arm")
     firmware = ROOT / "examples/languages/firmware"
-    for path in (firmware / "pyproject.toml", firmware / "Makefile", firmware / "bridge.py", *firmware.glob("src/*")):
+    for path in (
+        firmware / "pyproject.toml",
+        firmware / "Makefile",
+        firmware / "bridge.py",
+        *firmware.glob("src/*"),
+    ):
         target = tmp_path / "languages/firmware/a" / path.relative_to(firmware)
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(path.read_bytes())
@@ -135,7 +142,11 @@ def test_a_microcontroller_publishes_what_python_reads(tmp_path: Path) -> None:
     ifgen = ROOT / ".venv/bin/ifgen"
     run(["make", f"IFGEN={ifgen}"], project)
     done = subprocess.run(
-        [str(ifgen), "run", str(project / "bridge.py")], capture_output=True, text=True, timeout=120, check=False
+        [str(ifgen), "run", str(project / "bridge.py")],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == [

@@ -59,9 +59,9 @@ def test_reserved_words_and_macros_are_no_problem(tmp_path: Path) -> None:
     write(generate(GENERATOR, load(tmp_path / "a_msgs")), tmp_path)
     source = tmp_path / "main.cpp"
     source.write_text(
-        "#define ERROR 0\n#include \"a_msgs/msg/thing.hpp\"\n"
-        "static_assert(ERROR == 0, \"the macro is back\");\n"
-        "int main() {a_msgs::msg::Thing t; t.class_ = 1; t.operator_ = 2; t.template_ = \"\"; return t.class_ - 1;}\n"
+        '#define ERROR 0\n#include "a_msgs/msg/thing.hpp"\n'
+        'static_assert(ERROR == 0, "the macro is back");\n'
+        'int main() {a_msgs::msg::Thing t; t.class_ = 1; t.operator_ = 2; t.template_ = ""; return t.class_ - 1;}\n'
     )
     run([needs("g++"), "-std=c++17", *STRICT, f"-I{tmp_path}", str(source)])
 
@@ -104,7 +104,9 @@ def test_the_suite_passes(everything: Model, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_hostile_payloads_pass_with_sanitizers(tmp_path: Path) -> None:
-    model = load(ROOT / "interfaces/test_msgs", ROOT / "tests/conformance/interfaces/conformance_msgs/msg/OfMixed.msg")
+    model = load(
+        ROOT / "interfaces/test_msgs", ROOT / "tests/conformance/interfaces/conformance_msgs/msg/OfMixed.msg"
+    )
     write(generate(GENERATOR, model, testee=True), tmp_path)
     flags = ["-std=c++17", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover"]
     testee = build(tmp_path, [needs("g++"), *flags], ".cpp", tmp_path / "program")
