@@ -13,7 +13,7 @@ from ifgen.dynamic.describing import answers
 from ifgen.nodl.model import Category
 
 from ifgen_tools.graph.connections import Kind
-from ifgen_tools.graph.reading import Gid, ServicePart, View, is_hidden
+from ifgen_tools.ros_graph import Gid, ServicePart, View, is_hidden
 
 if TYPE_CHECKING:
     from ifgen.dynamic import TypeDescription

@@ -11,7 +11,7 @@ from ifgen.command_kit.options import OUTPUT_FILE, transport_option
 from ifgen.diagnostics import Diagnostic, UsageError
 
 if TYPE_CHECKING:
-    from ifgen_tools.session import TransportChoice
+    from ifgen_tools.verbs import TransportChoice
 
 # Late imports: each command loads what it needs, so that the others start fast.
 
