@@ -17,10 +17,11 @@ from ifgen.command_kit.tool import ToolError
 from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.signals import sigterm_raises
 
-from ifgen_tools.graph import reading
+from ifgen_tools import ros_graph
 from ifgen_tools.running import processes
 from ifgen_tools.running.ending import PATIENCE
-from ifgen_tools.session import Session, Transport, TransportChoice, activate, open_session
+from ifgen_tools.session import Session, Transport, activate, open_session
+from ifgen_tools.verbs import TransportChoice
 
 _QUIET: Final = 1.0
 """Seconds without a change after which programs have started, and their endpoints are known."""
@@ -51,7 +52,7 @@ def session_beside(programs: Sequence[Sequence[str]], transport: TransportChoice
             session.lookout.say = lambda _: None  # they take a while to come
         _discover(session, started)
         codes = [code for process in started if (code := process.poll()) is not None]
-        if started and len(codes) == len(started) and not reading.node_names(session.node):
+        if started and len(codes) == len(started) and not ros_graph.node_names(session.node):
             code = max(map(_as_shells_count, codes))
             message = f"the graph could not be observed: the programs ended with exit code {code}"
             advice = "run them with `ifgen run` to see why"
@@ -64,7 +65,7 @@ def _discover(session: Session, started: Sequence[subprocess.Popen[bytes]]) -> N
 
     def everybody_is_here() -> bool:
         expected = sum(process.poll() is None for process in started) if started else 1
-        return len(reading.node_names(session.node)) >= expected
+        return len(ros_graph.node_names(session.node)) >= expected
 
     if not started and session.transport == "local":
         session.discover()

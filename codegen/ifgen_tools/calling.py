@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 import click
 from ifgen.command_kit.tool import ToolError, did_you_mean
 
-from ifgen_tools.graph.reading import Named
+from ifgen_tools.ros_graph import Named
 from ifgen_tools.types import interface_class
 
 if TYPE_CHECKING:

@@ -36,7 +36,7 @@ def _looking(context: click.Context) -> Generator[Session]:
 
 def _visible(names: Iterable[str], typed: str) -> Iterator[str]:
     """Without hidden names, unless one is being typed."""
-    from ifgen_tools.graph.reading import is_hidden
+    from ifgen_tools.ros_graph import is_hidden
 
     return (name for name in names if is_hidden(typed) or not is_hidden(name))
 

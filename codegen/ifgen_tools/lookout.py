@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from ifgen_runtime import neighbours
 
-from ifgen_tools.graph.reading import node_names
+from ifgen_tools.ros_graph import node_names
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import click
 
-from ifgen_tools.graph.reading import full_name
+from ifgen_tools.ros_graph import full_name
 
 if TYPE_CHECKING:
     from rclpy.node import Node

@@ -10,11 +10,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
-from ifgen.command_kit.tool import Absent, ToolError
+from ifgen.command_kit.tool import Absent, ToolError, did_you_mean
 
 from ifgen_tools import discovery
-from ifgen_tools.graph.reading import View, read
 from ifgen_tools.lookout import Lookout
+from ifgen_tools.ros_graph import View, node_names, read
+from ifgen_tools.verbs import TransportChoice
 
 if TYPE_CHECKING:
     from rclpy.context import Context
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 
 Transport = Literal["local", "rclpy"]
 
-TransportChoice = Literal["local", "rclpy", "auto"]
-"""The values of `--transport`."""
+_PATIENCE_FOR_NODE: Final = 5.0
+"""Seconds that a named node may take to be discovered."""
 
 _TURN: Final = 0.1
 """Seconds between two looks at a condition, if nothing happens meanwhile."""
@@ -218,3 +219,34 @@ def activate(transport: TransportChoice) -> Transport:
         return put_on_path(transport, settle().output)
     except ActivationError as error:
         raise ToolError(str(error)) from None
+
+
+def find_node(session: Session, name: str, spin_time: float | None = None) -> str:
+    """The full name of a node that the user named, once it is there.
+
+    A hidden one, too: a user who names it wants it. If several have the name, it says so on stderr.
+    Raises ToolError if it is not there after `spin_time` [s].
+    """
+    wanted = name if name.startswith("/") else f"/{name}"
+    domain = session.context.get_domain_id()
+
+    def is_there() -> bool:
+        return wanted in node_names(session.node, True)
+
+    def is_known() -> bool:
+        return is_there() or (session.transport == "local" and discovery.knows_everybody(domain))
+
+    session.wait_for(is_known, _PATIENCE_FOR_NODE if spin_time is None else spin_time)
+    if is_there():
+        if (number := node_names(session.node, True).count(wanted)) > 1:
+            print(
+                f"warning: {number} nodes are called {wanted}: what they have is shown together, or that of "
+                "one of them only",
+                file=sys.stderr,
+            )
+        return wanted
+    others = node_names(session.node)
+    advice = did_you_mean(wanted, others) or (
+        "see `ifgen node list`" if others else "no node is running, or none that this process can see"
+    )
+    raise Absent(f"there is no node {wanted!r}", advice)

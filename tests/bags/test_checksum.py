@@ -7,7 +7,7 @@ import zlib
 from array import array
 
 import pytest
-from ifgen_runtime.bag.checksum import crc32
+from ifgen_runtime.bag.mcap.records import crc32
 from ifgen_runtime.codec.choice import chosen
 
 native = pytest.mark.skipif(

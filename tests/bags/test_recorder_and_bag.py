@@ -272,7 +272,7 @@ def test_metadata_is_written_although_closing_fails(tmp_path: Path, monkeypatch:
     def full(*_: Any) -> int:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("ifgen_runtime.bag.mcap_writer._write", full)
+    monkeypatch.setattr("ifgen_runtime.bag.mcap.writer._write", full)
     with pytest.raises(
         BagError, match=r"cannot be written any further: No space left on device\. It has 1 messages"
     ):

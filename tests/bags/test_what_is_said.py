@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from ifgen_runtime.bag import Bag, BagError, BagWarning, Recorder, compression, mcap_layout
+from ifgen_runtime.bag import Bag, BagError, BagWarning, Recorder, compression
 from ifgen_runtime.bag.compression import Undecodable, decompress
-from ifgen_runtime.bag.mcap_writer import McapWriter
+from ifgen_runtime.bag.mcap import layout as mcap_layout
+from ifgen_runtime.bag.mcap.writer import McapWriter
 
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, CHUNK_INDEX, DATA_END = 1, 2, 3, 4, 5, 6, 8, 15

@@ -8,7 +8,7 @@ from typing import Any, Final, cast
 
 from ifgen_runtime.bag.compression import decompressed_file
 from ifgen_runtime.bag.errors import BagError, Damages
-from ifgen_runtime.bag.mcap_file import McapFile
+from ifgen_runtime.bag.mcap.file import McapFile
 from ifgen_runtime.bag.metadata import METADATA
 from ifgen_runtime.bag.qos import OfferedQoS, parsed, profiles_of
 from ifgen_runtime.bag.topics import Source
@@ -152,7 +152,7 @@ def _file(path: Path, recording: Recording, damages: Damages) -> Source:
     with path.open("rb") as file:
         beginning = file.read(16)
     if beginning.startswith(b"SQLite format 3") or path.suffix == ".db3":
-        from ifgen_runtime.bag.sqlite_file import SqliteFile  # with sqlite3, which MCAP does not need
+        from ifgen_runtime.bag.sqlite.file import SqliteFile  # with sqlite3, which MCAP does not need
 
         source = SqliteFile(path, damages, recording.hashes)
         if source.has_compressed_messages:  # after a crash there is no metadata that says so

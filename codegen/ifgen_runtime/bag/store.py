@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from ifgen_runtime.bag import folder
-from ifgen_runtime.bag.classes import Classes, Decode, decoder
 from ifgen_runtime.bag.compression import Undecodable, decompress
+from ifgen_runtime.bag.definitions import Classes, Decode, decoder
 from ifgen_runtime.bag.errors import BagError, Damages
 from ifgen_runtime.bag.topics import Batch, Channel, Definition, Entry, Recorded, Source, Topic, Wanted
 from ifgen_runtime.errors import CodecError

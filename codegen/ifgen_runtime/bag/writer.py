@@ -11,7 +11,7 @@ from types import TracebackType
 from typing import Any, Final, Protocol, Self
 
 from ifgen_runtime.bag.errors import BagError, need
-from ifgen_runtime.bag.mcap_writer import McapWriter
+from ifgen_runtime.bag.mcap.writer import McapWriter
 from ifgen_runtime.bag.metadata import FileFacts, metadata_text, write_metadata
 from ifgen_runtime.bag.qos import write_qos
 from ifgen_runtime.bag.topics import Channel, Definition
@@ -321,7 +321,7 @@ class BagWriter:
 
 def _opened(path: Path, format: Format) -> FileWriter:
     if format.storage == "sqlite3":
-        from ifgen_runtime.bag.sqlite_writer import SqliteWriter  # with sqlite3, which MCAP does not need
+        from ifgen_runtime.bag.sqlite.writer import SqliteWriter  # with sqlite3, which MCAP does not need
 
         return SqliteWriter(path, _SECONDS)
     return _McapFileWriter(path, format.compression, format.chunk_size)

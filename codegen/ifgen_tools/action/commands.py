@@ -26,7 +26,7 @@ def action() -> None:
 @takes(ListOptions)
 def list_(chosen: ListOptions) -> None:
     """Print the names of all actions."""
-    from ifgen_tools.graph.services import print_list
+    from ifgen_tools.services import print_list
 
     print_list("action", chosen)
 
@@ -38,7 +38,7 @@ def list_(chosen: ListOptions) -> None:
 @takes(NameOptions)
 def type_(chosen: NameOptions) -> None:
     """Print the type of an action."""
-    from ifgen_tools.graph.services import print_type
+    from ifgen_tools.services import print_type
 
     print_type("action", chosen)
 
@@ -51,7 +51,7 @@ def type_(chosen: NameOptions) -> None:
 @takes(FindOptions)
 def find(chosen: FindOptions) -> None:
     """Print the actions of a type."""
-    from ifgen_tools.graph.services import print_those_of_type
+    from ifgen_tools.services import print_those_of_type
 
     print_those_of_type("action", chosen)
 
@@ -65,7 +65,7 @@ def find(chosen: FindOptions) -> None:
 @takes(NameOptions)
 def info(chosen: NameOptions) -> None:
     """Print the nodes that serve an action, and those that send goals to it."""
-    from ifgen_tools.graph.services import action_info
+    from ifgen_tools.services import action_info
 
     action_info(chosen)
 

@@ -15,7 +15,7 @@ from ifgen_tools.calling import (
     values_or_stdin,
     wait_for_server,
 )
-from ifgen_tools.graph.reading import actions
+from ifgen_tools.ros_graph import actions
 from ifgen_tools.session import open_session
 from ifgen_tools.texts.formats import as_json, as_yaml
 from ifgen_tools.texts.set_fields import read_yaml, set_fields

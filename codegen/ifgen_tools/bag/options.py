@@ -55,7 +55,7 @@ class Selection:
 
     def takes(self, topic: str, type_name: str) -> bool:
         """Whether a topic is chosen."""
-        from ifgen_tools.graph.reading import is_hidden  # half of the time that `--help` takes
+        from ifgen_tools.ros_graph import is_hidden  # half of the time that `--help` takes
 
         name = topic.removesuffix(SERVICE_EVENTS)
         if self.exclude_regex is not None and self.exclude_regex.search(name):

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import ToolError
-from ifgen_runtime.bag.classes import decoder
+from ifgen_runtime.bag.definitions import decoder
 from ifgen_runtime.codec import serialize
 
 from ifgen_tools.bag.files import warn

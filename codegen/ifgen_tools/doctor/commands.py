@@ -11,7 +11,7 @@ from ifgen.command_kit import terminal
 from ifgen.command_kit.options import format_option, include_option
 
 if TYPE_CHECKING:
-    from ifgen_tools.session import TransportChoice
+    from ifgen_tools.verbs import TransportChoice
 
 # Late imports: looking at this machine and looking at a graph have nothing in common.
 

@@ -12,7 +12,7 @@ from ifgen.nodl.model import Category
 from ifgen_runtime.mismatch.type_description_client import Question, worth_asking
 
 from ifgen_tools.graph.connections import Kind
-from ifgen_tools.graph.reading import Gid, ServicePart, View, is_hidden
+from ifgen_tools.ros_graph import Gid, ServicePart, View, is_hidden
 from ifgen_tools.type_descriptions import answers
 
 if TYPE_CHECKING:

@@ -22,7 +22,7 @@ from ifgen_tools.doctor.definitions import (
     users,
     without_hash,
 )
-from ifgen_tools.graph.reading import service_parts
+from ifgen_tools.ros_graph import service_parts
 
 if TYPE_CHECKING:
     from ifgen.dynamic import TypeDescription

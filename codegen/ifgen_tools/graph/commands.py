@@ -14,7 +14,7 @@ from ifgen.diagnostics import Diagnostic, UsageError
 
 if TYPE_CHECKING:
     from ifgen_tools.graph.connections import Graph
-    from ifgen_tools.session import TransportChoice
+    from ifgen_tools.verbs import TransportChoice
 
 # Late imports: drawings of descriptions and of running programs have little in common.
 

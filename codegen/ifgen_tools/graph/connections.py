@@ -10,7 +10,7 @@ from typing import Literal
 from ifgen.nodl import names
 from ifgen.nodl.model import Category, NodeDescription, QosProfile, qos_mismatch
 
-from ifgen_tools.graph.reading import Endpoint
+from ifgen_tools.ros_graph import Endpoint
 
 Kind = Literal["topic", "service", "action"]
 

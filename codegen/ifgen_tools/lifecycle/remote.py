@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import ToolError
 
-from ifgen_tools.graph.lookup import find_node
-from ifgen_tools.graph.reading import node_names
+from ifgen_tools.ros_graph import node_names
+from ifgen_tools.session import find_node
 
 if TYPE_CHECKING:
     from lifecycle_msgs.msg import State, Transition, TransitionDescription

@@ -10,9 +10,8 @@ from typing import Final
 from ifgen.command_kit.tool import ToolError
 from ifgen.nodl.model import Category
 
-from ifgen_tools.graph.lookup import find_node
-from ifgen_tools.graph.reading import is_hidden, node_names, of_node
-from ifgen_tools.session import open_session
+from ifgen_tools.ros_graph import is_hidden, node_names, of_node
+from ifgen_tools.session import find_node, open_session
 from ifgen_tools.verbs import ListOptions, NodeOptions
 
 _HEADINGS: Final = {

@@ -20,7 +20,7 @@ from ifgen.diagnostics import Diagnostic, InputError, UsageError
 
 if TYPE_CHECKING:
     from ifgen_tools.nodl.conformance import Report
-    from ifgen_tools.session import TransportChoice
+    from ifgen_tools.verbs import TransportChoice
 
 # Late imports: each command loads what it needs, so that the others start fast.
 

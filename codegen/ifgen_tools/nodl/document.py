@@ -12,8 +12,8 @@ from ifgen.nodl import names
 from ifgen.nodl.model import Category, QosProfile
 from ifgen.nodl.syntax.scalars import needs_escapes
 
-from ifgen_tools.graph.reading import Endpoint
 from ifgen_tools.nodl.parameters import RunningParameter
+from ifgen_tools.ros_graph import Endpoint
 
 _LIFECYCLE: Final = (
     "change_state",

@@ -14,8 +14,6 @@ import click
 from ifgen.command_kit.tool import ToolError
 from ifgen_runtime import parameter_yaml
 
-from ifgen_tools.graph.lookup import find_node
-from ifgen_tools.graph.reading import node_names
 from ifgen_tools.param.client import (
     BYTES,
     FIELDS,
@@ -26,7 +24,8 @@ from ifgen_tools.param.client import (
     value_of,
 )
 from ifgen_tools.param.options import DescribeOptions, GetOptions, ParamListOptions
-from ifgen_tools.session import Session, open_session
+from ifgen_tools.ros_graph import node_names
+from ifgen_tools.session import Session, find_node, open_session
 from ifgen_tools.verbs import NodeOptions
 
 if TYPE_CHECKING:

@@ -119,7 +119,7 @@ def demo(  # one for each option
     _prepare(transport)
     # MuJoCo and the nodes take a second or two to import: nobody should wonder meanwhile.
     what = "idle" if idle else f"scenario {Path(scenario).stem}"
-    click.echo(f"waking up the humanoid: {what}, seed {seed}")
+    print(f"waking up the humanoid: {what}, seed {seed}")
     sys.stdout.flush()
     # Found by name: the toolkit does not depend on its examples.
     humanoid = import_module("humanoid.show.demo")

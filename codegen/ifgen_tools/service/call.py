@@ -13,7 +13,7 @@ from ifgen_tools.calling import (
     values_or_stdin,
     wait_for_server,
 )
-from ifgen_tools.graph.reading import services
+from ifgen_tools.ros_graph import services
 from ifgen_tools.session import open_session
 from ifgen_tools.texts.formats import as_json
 from ifgen_tools.texts.set_fields import SetStamp, read_yaml, set_fields

@@ -51,7 +51,7 @@ def service(context: click.Context, include_hidden: bool) -> None:
 @takes(ListOptions)
 def list_(chosen: ListOptions) -> None:
     """Print the names of all services."""
-    from ifgen_tools.graph.services import print_list
+    from ifgen_tools.services import print_list
 
     print_list("service", chosen)
 
@@ -64,7 +64,7 @@ def list_(chosen: ListOptions) -> None:
 @takes(NameOptions)
 def type_(chosen: NameOptions) -> None:
     """Print the type of a service."""
-    from ifgen_tools.graph.services import print_type
+    from ifgen_tools.services import print_type
 
     print_type("service", chosen)
 
@@ -79,7 +79,7 @@ def type_(chosen: NameOptions) -> None:
 @takes(FindOptions)
 def find(chosen: FindOptions) -> None:
     """Print the services of a type."""
-    from ifgen_tools.graph.services import print_those_of_type
+    from ifgen_tools.services import print_those_of_type
 
     print_those_of_type("service", chosen)
 
@@ -93,7 +93,7 @@ def find(chosen: FindOptions) -> None:
 @takes(NameOptions)
 def info(chosen: NameOptions) -> None:
     """Print the type of a service, and how many nodes call and serve it."""
-    from ifgen_tools.graph.services import service_info
+    from ifgen_tools.services import service_info
 
     service_info(chosen)
 

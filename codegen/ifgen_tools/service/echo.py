@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 import click
 
 from ifgen_tools.calling import class_on_the_wire, full_type_name, known_class
-from ifgen_tools.graph.reading import services
-from ifgen_tools.graph.services import pick
+from ifgen_tools.ros_graph import services
+from ifgen_tools.services import pick
 from ifgen_tools.session import open_session
 from ifgen_tools.texts.formats import as_csv, as_json, plain, written
 

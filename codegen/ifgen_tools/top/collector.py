@@ -10,8 +10,8 @@ from ifgen.command_kit.tool import ToolError
 from ifgen_runtime.printable import printable
 
 from ifgen_tools import discovery
-from ifgen_tools.graph.reading import is_hidden, read
 from ifgen_tools.param.client import json_value, remote_parameters
+from ifgen_tools.ros_graph import is_hidden, read
 from ifgen_tools.top.graph import Graph, graph_of
 from ifgen_tools.top.listening import Listener, OnMessage, Tap
 from ifgen_tools.top.snapshot import NodeRow, Parameters, Snapshot, SubscriptionRow, TopicRow

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from ifgen.nodl.model import Category
 
-from ifgen_tools.graph.reading import Endpoint, View
+from ifgen_tools.ros_graph import Endpoint, View
 from ifgen_tools.top.snapshot import ServiceRow
 
 

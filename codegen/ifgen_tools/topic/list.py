@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ifgen.command_kit.tool import Absent, did_you_mean
 
-from ifgen_tools.graph.reading import full_name, is_hidden
+from ifgen_tools.ros_graph import full_name, is_hidden
 from ifgen_tools.session import open_session
 from ifgen_tools.topic.topics import find_topic
 from ifgen_tools.types import message_name

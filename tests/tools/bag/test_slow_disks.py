@@ -16,7 +16,7 @@ from ifgen_runtime.bag import Bag, BagWarning
 
 RECORDER = """
 import sys, time
-import ifgen_runtime.bag.mcap_writer as mcap_writer
+from ifgen_runtime.bag.mcap import writer as mcap_writer
 whole, rate = mcap_writer._write, float(sys.argv.pop(1))
 def slow(file, parts):
     size = whole(file, parts)

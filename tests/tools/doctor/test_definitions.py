@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from ifgen_tools.doctor.definitions import User, disagreements, users, whole, without_hash
-from ifgen_tools.graph.reading import read, service_parts
+from ifgen_tools.ros_graph import read, service_parts
 
 A, B, NONE = "RIHS01_" + "a" * 64, "RIHS01_" + "b" * 64, "INVALID"
 

@@ -23,7 +23,7 @@ from ifgen.nodl.model import (
     Validator,
 )
 from ifgen.nodl.names import expanded
-from ifgen_tools.graph import reading
+from ifgen_tools import ros_graph
 from ifgen_tools.nodl.commands import choose
 from ifgen_tools.nodl.document import as_json, as_yaml, document_of
 from ifgen_tools.nodl.parameters import RunningParameter
@@ -210,7 +210,7 @@ def _can_be_read(seen: list[RunningParameter], names: list[tuple[str, Category]]
     }
     qos = QosProfile("KEEP_ALL", "BEST_EFFORT")
     endpoints = [
-        reading.Endpoint("/n", name, category, types[category.folder], qos) for name, category in names
+        ros_graph.Endpoint("/n", name, category, types[category.folder], qos) for name, category in names
     ]
     document, omitted = document_of("/n", endpoints, seen)
     nodes: list[NodeDescription] = []
@@ -230,11 +230,11 @@ def test_what_nodl_cannot_say(tmp_path: Path) -> None:
     """It is left out with a message; the rest can be read back, as YAML and as JSON."""
     qos = QosProfile("KEEP_LAST", "RELIABLE", 5, "VOLATILE", liveliness="AUTOMATIC")
     endpoints = [
-        reading.Endpoint("/n", "/n/a", Category.PUBLISHER, "std_msgs/msg/String", qos),
-        reading.Endpoint("/n", "/n/a", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
-        reading.Endpoint("/n", "/n/_hidden", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
-        reading.Endpoint("/n", "/x", Category.SERVICE_SERVER, "strange type", None),
-        reading.Endpoint("/other", "/y", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
+        ros_graph.Endpoint("/n", "/n/a", Category.PUBLISHER, "std_msgs/msg/String", qos),
+        ros_graph.Endpoint("/n", "/n/a", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
+        ros_graph.Endpoint("/n", "/n/_hidden", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
+        ros_graph.Endpoint("/n", "/x", Category.SERVICE_SERVER, "strange type", None),
+        ros_graph.Endpoint("/other", "/y", Category.PUBLISHER, "std_msgs/msg/Bool", qos),
     ]
     document, omitted = document_of("/n", endpoints, None)
     assert document["publishers"][0]["qos"] == {

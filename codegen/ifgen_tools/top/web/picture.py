@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Final
 
 from ifgen_tools.graph.layout import Edge, layout
-from ifgen_tools.graph.reading import FRAMEWORK_SERVICES, FRAMEWORK_TOPICS
+from ifgen_tools.ros_graph import FRAMEWORK_SERVICES, FRAMEWORK_TOPICS
 from ifgen_tools.top.screen.tables import shortened
 from ifgen_tools.top.snapshot import Snapshot
 

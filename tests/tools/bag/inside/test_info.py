@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from ifgen_runtime.bag import Definition, Recorder
-from ifgen_runtime.bag.mcap_records import HEAD, MAGIC, Opcode
+from ifgen_runtime.bag.mcap.records import HEAD, MAGIC, Opcode
 from mcap.writer import Writer as McapWriter
 
 from tests.cli.conftest import Run

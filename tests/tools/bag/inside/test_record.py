@@ -393,7 +393,7 @@ def test_a_full_disk_is_said_and_what_was_written_stays(
     def is_done(recording: Recording) -> bool:
         if talk(recording):
             recording.writer.flush()
-            monkeypatch.setattr("ifgen_runtime.bag.mcap_writer._write", full)
+            monkeypatch.setattr("ifgen_runtime.bag.mcap.writer._write", full)
             recording.writer.split()
         return False
 

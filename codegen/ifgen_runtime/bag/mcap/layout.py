@@ -9,11 +9,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO, Final
 
-from ifgen_runtime.bag import mcap_records as records
-from ifgen_runtime.bag.checksum import crc32
 from ifgen_runtime.bag.compression import LARGEST, Undecodable, decompress
 from ifgen_runtime.bag.errors import UNPACKS, BagError, Damages
-from ifgen_runtime.bag.mcap_records import (
+from ifgen_runtime.bag.mcap import records
+from ifgen_runtime.bag.mcap.records import (
     FOOTER,
     HEAD,
     MAGIC,
@@ -23,6 +22,7 @@ from ifgen_runtime.bag.mcap_records import (
     Opcode,
     SchemaRecord,
     Statistics,
+    crc32,
 )
 
 _RUN: Final = 2**22

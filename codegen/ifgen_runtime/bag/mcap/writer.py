@@ -12,9 +12,8 @@ from struct import pack
 from sys import byteorder
 from typing import Any, Final
 
-from ifgen_runtime.bag.checksum import crc32
 from ifgen_runtime.bag.errors import BagError, need
-from ifgen_runtime.bag.mcap_records import FOOTER, HEAD, MAGIC, MESSAGE, Opcode
+from ifgen_runtime.bag.mcap.records import FOOTER, HEAD, MAGIC, MESSAGE, Opcode, crc32
 
 _LIBRARY: Final = "ifgen"
 _LONGEST_TIME: Final = 2**64

@@ -15,7 +15,7 @@ from ifgen_runtime.bag.compression import LARGEST, ZSTD
 from ifgen_runtime.bag.definitions import type_in
 from ifgen_runtime.bag.errors import BagError, Damages
 from ifgen_runtime.bag.qos import read_qos
-from ifgen_runtime.bag.sqlite_rescue import Row, Span, TornPage, missing_bytes, sound_rows
+from ifgen_runtime.bag.sqlite.rescue import Row, Span, TornPage, missing_bytes, sound_rows
 from ifgen_runtime.bag.topics import Batch, Channel, Definition, Entry, Wanted
 
 _BATCH: Final = 2**20

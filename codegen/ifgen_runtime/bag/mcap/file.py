@@ -10,8 +10,8 @@ from pathlib import Path
 
 from ifgen_runtime.bag.definitions import type_in
 from ifgen_runtime.bag.errors import BagError, Damages
-from ifgen_runtime.bag.mcap_layout import Layout, OpenFile, Piece, layout_of, opened, wrong_checksums
-from ifgen_runtime.bag.mcap_records import HEAD, MESSAGE, BadRecord, ChannelRecord, Opcode
+from ifgen_runtime.bag.mcap.layout import Layout, OpenFile, Piece, layout_of, opened, wrong_checksums
+from ifgen_runtime.bag.mcap.records import HEAD, MESSAGE, BadRecord, ChannelRecord, Opcode
 from ifgen_runtime.bag.qos import read_qos
 from ifgen_runtime.bag.topics import Batch, Channel, Definition, Entry, Wanted
 

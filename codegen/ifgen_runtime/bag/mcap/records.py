@@ -1,15 +1,19 @@
-"""The records of MCAP (mcap.dev/spec) as values. No length in a file is trusted.
+"""The records of MCAP (mcap.dev/spec) as values, and checksums. No length in a file is trusted.
 
 Numbers are little endian. A record is an opcode, the length of its content, and the content.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cache
 from struct import Struct
-from typing import Final
+from typing import Any, Final, TypeAlias
+from zlib import crc32 as crc32_of_zlib
+
+from ifgen_runtime.codec.choice import chosen
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 HEAD: Final = Struct("<BQ")
@@ -198,3 +202,18 @@ def statistics(content: bytes) -> Statistics:
     fields = Fields(content)
     messages, _, _, _, _, chunks = (fields.number(size) for size in (8, 2, 4, 4, 4, 4))
     return Statistics(messages, chunks, fields.number(8), fields.number(8), fields.numbers(2, 8))
+
+
+Checksum: TypeAlias = Callable[[Any, int], int]
+
+
+def crc32(data: bytes | bytearray | memoryview, before: int = 0) -> int:
+    """The checksum of data that follows data whose checksum is `before`."""
+    return _fastest()(data, before)
+
+
+@cache
+def _fastest() -> Checksum:
+    """That of the extension, which has none for processors without the instruction."""
+    found: Checksum = getattr(chosen().extension, "crc32", crc32_of_zlib)
+    return found

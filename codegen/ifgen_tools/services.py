@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 from ifgen.command_kit.tool import Absent, did_you_mean
 from ifgen.nodl.model import Category
 
-from ifgen_tools.graph.reading import Named, View, actions, services
+from ifgen_tools.ros_graph import Named, View, actions, services
 from ifgen_tools.session import open_session
 from ifgen_tools.verbs import FindOptions, ListOptions, NameOptions
 

@@ -1,0 +1,1 @@
+"""MCAP (mcap.dev/spec): files of chunks, with an index at the end."""

@@ -1,0 +1,1 @@
+"""The database of rosbag2, in SQLite."""
