@@ -8,9 +8,9 @@ import ifgen.dynamic
 from common import rclpy, spin_until
 from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.mismatch import listeners
-from ifgen_runtime.mismatch.real_rclpy.guarded_subscriptions import TELLS_PUBLISHER
-from ifgen_runtime.mismatch.real_rclpy.watch import watch_of
-from ifgen_runtime.type_support import tables
+from ifgen_runtime.real_rclpy import tables
+from ifgen_runtime.real_rclpy.guarded_subscriptions import TELLS_PUBLISHER
+from ifgen_runtime.real_rclpy.watch import watch_of
 from rcl_interfaces.msg import Log
 from rclpy.context import Context
 from rclpy.node import Node

@@ -18,11 +18,11 @@ from ifgen_runtime.mismatch import listeners
 from ifgen_runtime.mismatch.explanation import explanation, in_one_line
 from ifgen_runtime.mismatch.limits import Say, SeenSet, WarningLimit
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
-from ifgen_runtime.mismatch.real_rclpy.peers import Peer
 from ifgen_runtime.mismatch.sides import Definition, Mismatch, Side, definition_of
 from ifgen_runtime.mismatch.type_description_client import Definitions, Question, node_connection
-from ifgen_runtime.type_support import register
+from ifgen_runtime.real_rclpy import register
+from ifgen_runtime.real_rclpy.endpoints import Endpoint, Part
+from ifgen_runtime.real_rclpy.peers import Peer
 
 _ASKING: Final = "_ifgen_type_mismatch"
 """The name of the hidden node that asks others, and exists only while questions are open."""
