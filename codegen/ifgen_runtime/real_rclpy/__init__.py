@@ -16,7 +16,7 @@ def import_type_support(interface: type[Any]) -> None:
     Raises TypeSupportError, which says what is missing and what to do.
     """
     from ifgen_runtime.real_rclpy import instrumentation  # with rclpy only, and it is running
-    from ifgen_runtime.real_rclpy.register import give_type_support  # with the extension, which may be missing
+    from ifgen_runtime.real_rclpy.register import give_type_support  # with the extension, if it is there
 
     try:
         give_type_support(interface)

@@ -7,7 +7,7 @@ import threading
 import ifgen.dynamic
 from common import rclpy, spin_until
 from ifgen_runtime.adapters import Adapter, register
-from ifgen_runtime.mismatch import listeners
+from ifgen_runtime.mismatch import reporting
 from ifgen_runtime.real_rclpy import tables
 from ifgen_runtime.real_rclpy.guarded_subscriptions import TELLS_PUBLISHER
 from ifgen_runtime.real_rclpy.watch import watch_of
@@ -25,7 +25,7 @@ Ours, Theirs = (
 )
 MANY = int(sys.argv[1])
 heard = []
-listeners.heard = heard.append
+reporting.listener = heard.append
 
 
 def threads() -> int:
