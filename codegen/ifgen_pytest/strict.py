@@ -58,10 +58,10 @@ class StrictCheck:
     def _watch_definitions(self) -> None:
         """Note endpoints whose definitions differ; nobody compares them without generated messages."""
         try:
-            listeners = importlib.import_module("ifgen_runtime.mismatch.listeners")
+            reporting = importlib.import_module("ifgen_runtime.mismatch.reporting")
         except ImportError:
             return
-        self._exchange(listeners, "heard", self._on_mismatch)
+        self._exchange(reporting, "listener", self._on_mismatch)
 
     def _watch_actions(self) -> None:
         """Note what goals raise: an action server only logs it, and aborts the goal."""
@@ -107,7 +107,7 @@ class StrictCheck:
         """A text for each mismatch."""
         if not self._mismatches:
             return []
-        explain = importlib.import_module("ifgen_runtime.mismatch.explanation").explanation
+        explain = importlib.import_module("ifgen_runtime.mismatch.reporting").explanation
         return [explain(mismatch) for mismatch in self._mismatches.values()]
 
     def end(self) -> None:

@@ -30,7 +30,7 @@ class InterfaceMeta(type):
     @classmethod
     def __import_type_support__(mcs) -> None:
         """Set the type support of the class and of its parts; raises TypeSupportError where there is none."""
-        from ifgen_runtime.type_support import import_type_support  # only real rclpy comes here
+        from ifgen_runtime.real_rclpy import import_type_support  # only real rclpy comes here
 
         import_type_support(mcs._interface)
 

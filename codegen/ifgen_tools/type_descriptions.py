@@ -18,12 +18,12 @@ from typing import Any, Final, TypeVar
 from ifgen.definition.described.reading import ACTION_PARTS, SERVICE_PARTS, read
 from ifgen.definition.type_description import TypeId, type_hash
 from ifgen.dynamic import DescribeError, TypeDescription
-from ifgen_runtime.mismatch.sides import definition_from
 from ifgen_runtime.mismatch.type_description_client import (
     Connection,
     Inquiry,
     Patience,
     Question,
+    definition_from,
     node_connection,
 )
 

@@ -6,7 +6,7 @@ from enum import IntEnum
 
 import pytest
 from ifgen.definition import type_description as ours
-from ifgen_runtime.type_support import type_ids as theirs
+from ifgen_runtime import type_description as theirs
 
 
 @pytest.mark.parametrize(("one", "other"), [(ours.TypeId, theirs.TypeId), (ours.Kind, theirs.Kind)])

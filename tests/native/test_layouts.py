@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import ClassVar
 
 import pytest
-from ifgen_runtime.type_support import probe, tables
+from ifgen_runtime.real_rclpy import probe, tables
 
 from .support import ROOT, needs_rclpy, run_python
 
@@ -122,7 +122,7 @@ def test_layouts_are_those_of_the_headers(tmp_path: Path) -> None:
 def test_the_installed_libraries_are_known() -> None:
     program = (
         "import ifgen; ifgen.activate('rclpy'); import rclpy; rclpy.init()\n"
-        "from ifgen_runtime.type_support.binding import member_layout\n"
+        "from ifgen_runtime.real_rclpy.binding import member_layout\n"
         "print(member_layout().__name__)\n"
     )
     ran = run_python("-c", program)

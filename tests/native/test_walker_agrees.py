@@ -19,10 +19,14 @@ from hypothesis import given, settings  # noqa: E402  # not needed where the ext
 from hypothesis import strategies as st  # noqa: E402
 from ifgen_runtime import DeserializationError, serialize  # noqa: E402
 from ifgen_runtime.codec.decoding import decode_any  # noqa: E402
+from ifgen_runtime.real_rclpy.layout import (  # noqa: E402
+    Description,
+    Layout,
+    described_layout,
+    layout_of,
+)
+from ifgen_runtime.real_rclpy.register import _decoder  # noqa: E402
 from ifgen_runtime.type_description import describe  # noqa: E402
-from ifgen_runtime.type_support.descriptions import Description  # noqa: E402
-from ifgen_runtime.type_support.layout import Layout, described_layout, layout_of  # noqa: E402
-from ifgen_runtime.type_support.register import _decoder  # noqa: E402
 
 from ..codec.big_endian import big_endian  # noqa: E402
 from ..codec.strategies import messages  # noqa: E402

@@ -213,14 +213,15 @@ def test_setting_and_projects_without_ros(pytester: pytest.Pytester) -> None:
 
 DIFFERING = """
 import pytest
-from ifgen_runtime.mismatch.listeners import tell
-from ifgen_runtime.mismatch.sides import Mismatch, Side
+from ifgen_runtime.mismatch.limits import WarningLimit
+from ifgen_runtime.mismatch.reporting import Mismatch, Side, report
 
 
 @pytest.mark.parametrize("policy", ["warn", "adapt"])
 def test_definitions(ros_node, policy):
     mine, theirs = (Side(f"/{role}", role, f"RIHS01_{role}") for role in ("subscription", "publisher"))
-    tell(Mismatch("topic", "/path", "acme_msgs/msg/Path", policy, mine, theirs))
+    met = Mismatch("topic", "/path", "acme_msgs/msg/Path", policy, mine, theirs)
+    report(met, WarningLimit(), lambda explanation: "")
 """
 
 

@@ -14,8 +14,9 @@ from importlib import import_module
 from itertools import islice
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeAlias
 
+from ifgen_runtime.convert import to_dict
 from ifgen_runtime.mismatch.limits import Lru, SeenSet
-from ifgen_runtime.mismatch.sides import Definition, definition_from
+from ifgen_runtime.mismatch.reporting import Definition
 from ifgen_runtime.type_description import hash_of
 
 if TYPE_CHECKING:
@@ -139,6 +140,18 @@ def worth_asking(questions: Iterable[Question]) -> list[Question]:
             ranked.append((ranks[question.type_hash], question))
             ranks[question.type_hash] += 1
     return [question for _, question in sorted(ranked, key=lambda pair: pair[0])]
+
+
+def definition_from(response: Any) -> Definition:
+    """The definition in a response of another node's `~/get_type_description`.
+
+    It is what that node says: nobody has checked it yet. Raises ValueError, with the node's reason, if the
+    node refused.
+    """
+    if not response.successful:
+        raise ValueError(response.failure_reason or "the node does not say why")
+    texts = ((known.type_name, known.encoding, known.raw_file_contents) for known in response.type_sources)
+    return Definition(to_dict(response.type_description), tuple(texts))
 
 
 class Definitions:

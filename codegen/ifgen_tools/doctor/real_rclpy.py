@@ -9,8 +9,7 @@ from importlib.metadata import version
 
 import ifgen
 from ifgen_runtime import installation
-from ifgen_runtime.type_support.binding import native
-from ifgen_runtime.type_support.errors import TypeSupportError
+from ifgen_runtime.real_rclpy.binding import TypeSupportError, native
 
 # Late imports: rclpy is found once the transport has been chosen.
 

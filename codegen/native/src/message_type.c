@@ -19,7 +19,7 @@ static const void *type_hash(const message_handle *handle) { return ((const mess
 static const void *type_description(const message_handle *handle) { return ((const message_type *)handle)->description; }
 static const void *type_sources(const message_handle *handle) { return ((const message_type *)handle)->sources; }
 
-/* ---- called by ifgen_runtime.type_support ----------------------------------------------------------------- */
+/* ---- called by ifgen_runtime.real_rclpy ----------------------------------------------------------------- */
 
 bool layout_from_python(layout *made, PyObject *tables) {
   const Py_ssize_t count = PyTuple_Check(tables) ? PyTuple_Size(tables) : 0;

@@ -1,4 +1,4 @@
-/* The extension module: what `ifgen_runtime.type_support` calls. Addresses go in and out as integers, since the
+/* The extension module: what `ifgen_runtime.real_rclpy` calls. Addresses go in and out as integers, since the
  * tables behind them (hashes, descriptions, members) are ctypes structures that the caller keeps alive for good. */
 #include "checksum.h"
 #include "message.h"
@@ -50,7 +50,7 @@ static struct PyModuleDef definition = {
     .m_methods = methods,
 };
 
-enum { TYPE_SUPPORT_VERSION = 3 }; /* of the functions above; ifgen_runtime/type_support/binding.py has the same */
+enum { TYPE_SUPPORT_VERSION = 3 }; /* of the functions above; ifgen_runtime/real_rclpy/binding.py has the same */
 
 PyMODINIT_FUNC PyInit__native(void) {
   PyObject *module = PyModule_Create(&definition);

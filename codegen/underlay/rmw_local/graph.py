@@ -172,7 +172,7 @@ class GraphNode:
             writer = make(self, message_type, topic, resolved)
             changed = place.add_writer(writer)
         self.announce(writer, changed)
-        self._tell_of_encounters(writer)
+        self._report_encounters(writer)
         return writer
 
     def create_reader(self, message_type: MessageType, topic: str, qos: QosProfile) -> Reader:
@@ -187,7 +187,7 @@ class GraphNode:
             reader = make(self, message_type, topic, resolved)
             changed = place.add_reader(reader)
         self.announce(reader, changed)
-        self._tell_of_encounters(reader)
+        self._report_encounters(reader)
         return reader
 
     def create_client(self, service_type: ServiceType, name: str, qos: QosProfile) -> ServiceClient:
@@ -256,7 +256,7 @@ class GraphNode:
             self.participant.claim(request_topic(endpoint.name), endpoint.service_type.name)
             domain.service(endpoint.name).add(endpoint)
         self.announce(endpoint, [])
-        self._tell_of_encounters(endpoint)
+        self._report_encounters(endpoint)
 
     def _leave_topic(self, name: str) -> None:
         topics = self.participant.domain.topics
@@ -272,13 +272,13 @@ class GraphNode:
         if link is not None:
             link.announce(entity)
 
-    def _tell_of_encounters(self, newcomer: Writer | Reader | ServiceEndpoint) -> None:
+    def _report_encounters(self, newcomer: Writer | Reader | ServiceEndpoint) -> None:
         if not newcomer.encounters:
             return
-        from rmw_local.mismatch.telling import tell_of  # late: definitions hardly ever differ
+        from rmw_local.mismatch.reporting import report  # late: definitions hardly ever differ
 
         encounters, newcomer.encounters = newcomer.encounters, ()
-        tell_of(each for each in encounters if not each.crosses_processes)
+        report(each for each in encounters if not each.crosses_processes)
         remote = [each for each in encounters if each.crosses_processes]
         link = self.participant.domain.link
         if remote and link is not None:

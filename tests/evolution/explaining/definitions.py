@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 import ifgen.dynamic
-from ifgen_runtime.mismatch.sides import Definition, Mismatch, Side, definition_of
+from ifgen_runtime.mismatch.reporting import Definition, Mismatch, Side, definition_of
 from ifgen_runtime.type_description import type_name
 
 BATTERY = "robot_msgs/msg/BatteryState"

@@ -13,7 +13,7 @@ from ifgen.cli.evolution.explain import explain
 from ifgen.cli.main import main
 from ifgen.evolution.explaining.definitions import Installed, of_sources
 from ifgen.evolution.explaining.explanation import differences
-from ifgen_runtime.mismatch.sides import Definition
+from ifgen_runtime.mismatch.reporting import Definition
 
 from .definitions import BATTERY, NEW, OLD, made, met, without_definition, without_sources
 

@@ -16,8 +16,8 @@ import rclpy
 from ifgen_runtime import to_dict
 from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.field_types import Basic, Text, fields_of
-from ifgen_runtime.mismatch import listeners
-from ifgen_runtime.mismatch.explanation import explanation
+from ifgen_runtime.mismatch import reporting
+from ifgen_runtime.mismatch.reporting import explanation
 from rclpy.executors import SingleThreadedExecutor
 
 role, corpus = sys.argv[1:]
@@ -86,7 +86,7 @@ class Pair:
         if not self.is_same:
             register(Adapter(self.old, self.new, partial(upgraded, new=self.new)))
         met, heard, received = None, [], []
-        listeners.heard = lambda mismatch: heard.append((time.monotonic(), mismatch))
+        reporting.listener = lambda mismatch: heard.append((time.monotonic(), mismatch))
         subscription = node.create_subscription(self.new, self.topic, received.append, 10)
         until = end = time.monotonic() + LIMIT
         while (now := time.monotonic()) < until:

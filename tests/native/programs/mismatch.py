@@ -13,7 +13,7 @@ import time
 import ifgen.dynamic
 from common import rclpy
 from ifgen_runtime.adapters import Adapter, register
-from ifgen_runtime.mismatch import listeners
+from ifgen_runtime.mismatch import reporting
 from rcl_interfaces.msg import Log
 from rclpy.action import ActionClient, ActionServer
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -129,7 +129,7 @@ def mine() -> None:
             [*found, mismatch.mine.node, theirs.node, theirs.definition is not None, time.monotonic()]
         )
 
-    listeners.heard = hear
+    reporting.listener = hear
     rclpy.init(args=["--ros-args", "-r", "speed_in:=/speed"])
     node = rclpy.create_node("mine", namespace="/robot")
     node.create_subscription(

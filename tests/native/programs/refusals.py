@@ -11,7 +11,7 @@ import rclpy.utilities
 from common import rclpy
 from humanoid_interfaces.msg import Footstep, FootstepPlan
 from humanoid_interfaces.srv import AddTwoInts
-from ifgen_runtime.type_support import binding, probe
+from ifgen_runtime.real_rclpy import binding, probe
 
 PAST_THE_END = 1 << 30
 make_buffer = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t)

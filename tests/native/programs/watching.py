@@ -7,10 +7,10 @@ import threading
 import ifgen.dynamic
 from common import rclpy, spin_until
 from ifgen_runtime.adapters import Adapter, register
-from ifgen_runtime.mismatch import listeners
-from ifgen_runtime.mismatch.real_rclpy.guarded_subscriptions import TELLS_PUBLISHER
-from ifgen_runtime.mismatch.real_rclpy.watch import watch_of
-from ifgen_runtime.type_support import tables
+from ifgen_runtime.mismatch import reporting
+from ifgen_runtime.real_rclpy import tables
+from ifgen_runtime.real_rclpy.guarded_subscriptions import TELLS_PUBLISHER
+from ifgen_runtime.real_rclpy.watch import watch_of
 from rcl_interfaces.msg import Log
 from rclpy.context import Context
 from rclpy.node import Node
@@ -25,7 +25,7 @@ Ours, Theirs = (
 )
 MANY = int(sys.argv[1])
 heard = []
-listeners.heard = heard.append
+reporting.listener = heard.append
 
 
 def threads() -> int:

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 
 import pytest
 from ifgen_runtime import adapters
-from ifgen_runtime.mismatch import listeners
-from ifgen_runtime.mismatch.sides import Mismatch
+from ifgen_runtime.mismatch import reporting
+from ifgen_runtime.mismatch.reporting import Mismatch
 
 from tests.rclpy.inside.contract.processes import ACROSS, Pair, connected
 
@@ -37,7 +37,7 @@ def no_adapters(monkeypatch: pytest.MonkeyPatch) -> None:
 def heard(monkeypatch: pytest.MonkeyPatch) -> list[Mismatch]:
     """What the listener for strict mode hears."""
     noted: list[Mismatch] = []
-    monkeypatch.setattr(listeners, "heard", noted.append)
+    monkeypatch.setattr(reporting, "listener", noted.append)
     return noted
 
 

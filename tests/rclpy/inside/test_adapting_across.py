@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from ifgen.dynamic import class_from_text
 from ifgen_runtime.adapters import Adapter, register
-from ifgen_runtime.mismatch.sides import Mismatch
+from ifgen_runtime.mismatch.reporting import Mismatch
 from rclpy.node import Node
 
 from tests.rclpy.inside.contract.processes import DURABLE, Pair

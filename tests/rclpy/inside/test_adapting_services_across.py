@@ -9,12 +9,11 @@ import pytest
 from ifgen_runtime import ServerGoneError
 from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.codec import deserialize, serialize
-from ifgen_runtime.mismatch.explanation import in_one_line
-from ifgen_runtime.mismatch.sides import Mismatch
+from ifgen_runtime.mismatch import reporting
+from ifgen_runtime.mismatch.reporting import Mismatch, in_one_line
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from rclpy.task import Future
-from rmw_local.mismatch import telling
 from rmw_local.transports import services
 
 from tests.rclpy.inside.adding import Message, NewAdd, OldAdd, adapters_for_add, new_add, old_add
@@ -23,7 +22,7 @@ from tests.rclpy.inside.contract.processes import ACROSS, IN_ROUNDS, Pair, conne
 
 @pytest.fixture(autouse=True)
 def clean(no_adapters: None, heard: list[Mismatch], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(telling, "explanation", in_one_line)  # whether or not the toolkit is installed
+    monkeypatch.setattr(reporting, "explanation", in_one_line)  # whether or not the toolkit is installed
 
 
 @pytest.fixture(params=[*ACROSS, *IN_ROUNDS])

@@ -17,8 +17,7 @@ from hypothesis import strategies as st
 from ifgen.dynamic import class_from_text
 from ifgen_runtime.codec import serialize
 from ifgen_runtime.convert import from_dict
-from ifgen_runtime.mismatch.explanation import explanation
-from ifgen_runtime.mismatch.sides import Mismatch, Side
+from ifgen_runtime.mismatch.reporting import Mismatch, Side, explanation
 from ifgen_runtime.mismatch.type_description_client import Definitions, Question
 from ifgen_runtime.type_description import describe
 from rmw_local.qos import KEEP_LAST, QosProfile
@@ -138,7 +137,7 @@ def test_whatever_a_transport_brings_leaves_no_trace(pair: Pair, honest: Process
     honest.node.get_publishers_info_by_topic("/value")
     for gid in list(link.others._known):
         link._on_entity(replace(EVIL, gid=gid), False)
-    pair.until(lambda: not link._teller._is_telling)
+    pair.until(lambda: not link._reporter._is_reporting)
     assert len(link.others) == 0
     assert (sorted(honest.domain.topics), sorted(honest.domain.services), len(honest.domain.nodes)) == before
 

@@ -13,9 +13,8 @@ from typing import Any
 import pytest
 from ifgen.dynamic import class_from_text
 from ifgen_runtime import from_dict
-from ifgen_runtime.mismatch import listeners, type_description_client
-from ifgen_runtime.mismatch.explanation import explanation
-from ifgen_runtime.mismatch.sides import Mismatch, definition_of
+from ifgen_runtime.mismatch import reporting, type_description_client
+from ifgen_runtime.mismatch.reporting import Mismatch, definition_of, explanation
 from ifgen_runtime.mismatch.type_description_client import Patience
 from ifgen_runtime.type_description import describe
 from rclpy.action import ActionClient, ActionServer
@@ -234,7 +233,7 @@ def test_a_listener_that_fails_does_not_end_the_warnings(
         topics.append(mismatch.name)
         raise RuntimeError("no")
 
-    monkeypatch.setattr(listeners, "heard", fail)
+    monkeypatch.setattr(reporting, "listener", fail)
     for topic in "abc":  # some of which are told together
         other.create_subscription(NewPoint, topic, ignore, 10)
         one.create_publisher(OldPoint, topic, 10)
@@ -249,8 +248,8 @@ def test_the_thread_ends_with_its_work(recorded: Pair, heard: list[Mismatch]) ->
     one.create_publisher(OldPoint, "point", 10)
     recorded.until(lambda: len(heard) == 2)
     assert threading.active_count() == before
-    tellers = [process.link._teller for process in recorded.processes]
-    recorded.until(lambda: not any(teller._is_telling for teller in tellers))
+    reporters = [process.link._reporter for process in recorded.processes]
+    recorded.until(lambda: not any(reporter._is_reporting for reporter in reporters))
 
 
 def _wait(condition: Callable[[], Any]) -> None:

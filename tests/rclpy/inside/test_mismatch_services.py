@@ -9,15 +9,14 @@ import pytest
 import rclpy
 from ifgen.dynamic import class_from_text
 from ifgen_runtime.adapters import Adapter, register
-from ifgen_runtime.mismatch.explanation import in_one_line
-from ifgen_runtime.mismatch.sides import Mismatch
+from ifgen_runtime.mismatch import reporting
+from ifgen_runtime.mismatch.reporting import Mismatch, in_one_line
 from rclpy.action import ActionClient, ActionServer
 from rclpy.client import Client
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.task import Future
-from rmw_local.mismatch import telling
 
 from tests.rclpy.inside.adding import ADD, Message, NewAdd, OldAdd, adapters_for_add, new_add, old_add
 
@@ -31,7 +30,7 @@ NewWalk = class_from_text(
 
 @pytest.fixture(autouse=True)
 def executor(no_adapters: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[SingleThreadedExecutor]:
-    monkeypatch.setattr(telling, "explanation", in_one_line)  # whether or not the toolkit is installed
+    monkeypatch.setattr(reporting, "explanation", in_one_line)  # whether or not the toolkit is installed
     rclpy.init()
     made = SingleThreadedExecutor()
     yield made

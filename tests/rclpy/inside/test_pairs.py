@@ -19,10 +19,10 @@ from ifgen.dynamic import class_from_text
 from ifgen_runtime.adapters import Adapter, register
 from ifgen_runtime.codec import serialize
 from ifgen_runtime.errors import SerializationError
+from ifgen_runtime.mismatch import reporting
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rmw_local import report
-from rmw_local.mismatch import telling
 
 from tests.evolution.corpus import Edit, edits, messages
 
@@ -57,7 +57,7 @@ def pairs() -> list[tuple[Edit, Any, Any]]:
 @pytest.fixture
 def said(no_adapters: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     """The warnings, by the toolkit, installed or not."""
-    monkeypatch.setattr(telling, "explanation", lambda mismatch: explain(asdict(mismatch)))
+    monkeypatch.setattr(reporting, "explanation", lambda mismatch: explain(asdict(mismatch)))
     texts: list[str] = []
     monkeypatch.setattr(report, "say", lambda node, text, is_warning=True: texts.append(text))
     rclpy.init()

@@ -8,11 +8,19 @@ from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
+import pytest
 from ifgen.dynamic import class_from_text
 from ifgen_runtime.convert import from_dict
 from ifgen_runtime.field_types import type_name
-from ifgen_runtime.mismatch.type_description_client import Definitions, Question, worth_asking
+from ifgen_runtime.mismatch.reporting import definition_of
+from ifgen_runtime.mismatch.type_description_client import (
+    Definitions,
+    Question,
+    definition_from,
+    worth_asking,
+)
 from ifgen_runtime.type_description import describe
+from type_description_interfaces.msg import TypeSource
 from type_description_interfaces.srv import GetTypeDescription
 
 Point, Speed = (
@@ -106,3 +114,25 @@ def test_nothing_is_asked_or_waited_for_once_all_is_over() -> None:
 
 def test_nobody_without_a_name_or_a_hash_is_asked() -> None:
     assert worth_asking([Question("", "a/msg/B", "RIHS01_1"), Question("/a", "a/msg/B", "")]) == []
+
+
+def test_an_answer_has_the_definition_that_the_class_of_the_other_node_was_generated_from() -> None:
+    text = "geometry_msgs/Point[<=3] path\nfloat64 speed 0.1  # [m/s]\n"
+    own = definition_of(class_from_text("robot_msgs/msg/Plan", text))
+    response = GetTypeDescription.Response(successful=True)
+    response.type_description = from_dict(type(response.type_description), own.document)
+    response.type_sources = [
+        TypeSource(type_name=name, encoding=encoding, raw_file_contents=text)
+        for name, encoding, text in own.sources
+    ]
+    found = definition_from(response)
+    assert found == own
+    assert found.sources[0] == ("robot_msgs/msg/Plan", "msg", text)
+
+
+@pytest.mark.parametrize(
+    ("reason", "said"), [("no such type", "no such type"), ("", "the node does not say why")]
+)
+def test_a_node_that_refuses_says_why(reason: str, said: str) -> None:
+    with pytest.raises(ValueError, match=f"^{said}$"):
+        definition_from(SimpleNamespace(successful=False, failure_reason=reason))

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from ifgen.cli.main import main
 from ifgen.dynamic import TypeDescription
-from ifgen_runtime.mismatch.sides import definition_of
+from ifgen_runtime.mismatch.reporting import definition_of
 from ifgen_tools.doctor.definitions import User
 from ifgen_tools.doctor.findings import Seen, findings
 

@@ -43,7 +43,7 @@ _LATE: Final = (
     "rmw_local.mismatch.encounter",
     "rmw_local.mismatch.origin",
     "rmw_local.mismatch.passage",
-    "rmw_local.mismatch.telling",
+    "rmw_local.mismatch.reporting",
     "rmw_local.statistics",
     "rmw_local.transports.environment",
     "rmw_local.transports.link",

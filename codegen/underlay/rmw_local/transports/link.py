@@ -24,8 +24,8 @@ from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceServer
 from rmw_local.transports.background import Background
 from rmw_local.transports.interface import Entity, Kind
 from rmw_local.transports.remote import Adapted, Others, RemoteReader, RemoteWriter
+from rmw_local.transports.reporter import Reporter
 from rmw_local.transports.services import ShownClient, ShownServer
-from rmw_local.transports.teller import Teller
 from rmw_local.writer import Writer
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Link:
     def __init__(self, domain: Domain, transport: Transport) -> None:
         self.others = Others(domain)
         self._background = Background()
-        self._teller = Teller(domain, transport, self._background)
+        self._reporter = Reporter(domain, transport, self._background)
         self._domain = domain
         self._transport = transport
         self._lock = _thread.allocate_lock()  # not threading's, which virtual time exchanges
@@ -77,7 +77,7 @@ class Link:
             self._closed = True
             self._presences.clear()
             self._adapted.clear()
-        self._teller.close()
+        self._reporter.close()
         self._background.end(_FAREWELL)
         self._transport.close()
         self._domain.link = None
@@ -132,7 +132,7 @@ class Link:
             self._adapt(adapting)  # lockstep: others are to learn of it in the same round each time
         elif adapting:
             self._background.start(self._adapt, adapting)
-        self._teller.tell_of(encounters)
+        self._reporter.report(encounters)
 
     def _adapt(self, encounters: Iterable[Encounter]) -> None:
         """Receive what is addressed to other definitions. Clients send to these, and need no preparation."""

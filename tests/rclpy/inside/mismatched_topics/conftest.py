@@ -6,15 +6,15 @@ from collections.abc import Iterator
 
 import pytest
 import rclpy
-from ifgen_runtime.mismatch.explanation import in_one_line
-from rmw_local.mismatch import telling
+from ifgen_runtime.mismatch import reporting
+from ifgen_runtime.mismatch.reporting import in_one_line
 
 from tests.rclpy.inside.mismatched_topics.speeds import nodes
 
 
 @pytest.fixture(autouse=True)
 def _ros(no_adapters: None, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.setattr(telling, "explanation", in_one_line)  # whether or not the toolkit is installed
+    monkeypatch.setattr(reporting, "explanation", in_one_line)  # whether or not the toolkit is installed
     rclpy.init()
     yield
     while nodes:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import rclpy
-from ifgen_runtime.mismatch.sides import Mismatch
+from ifgen_runtime.mismatch.reporting import Mismatch
 from rclpy.event_handler import SubscriptionEventCallbacks
 
 from tests.rclpy.inside.mismatched_topics.speeds import (

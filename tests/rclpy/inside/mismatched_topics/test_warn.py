@@ -9,7 +9,7 @@ import rclpy
 from ifgen.dynamic import class_from_text
 from ifgen_runtime.codec import serialize
 from ifgen_runtime.mismatch import limits
-from ifgen_runtime.mismatch.sides import Mismatch
+from ifgen_runtime.mismatch.reporting import Mismatch
 from rclpy.node import Node
 
 from tests.rclpy.inside.mismatched_topics.speeds import (

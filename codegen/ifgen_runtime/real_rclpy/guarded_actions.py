@@ -11,8 +11,8 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from ifgen_runtime.mismatch.real_rclpy.endpoints import Part, parts_of
-from ifgen_runtime.mismatch.real_rclpy.peers import Others, Peer
+from ifgen_runtime.real_rclpy.endpoints import Part, parts_of
+from ifgen_runtime.real_rclpy.peers import Others, Peer
 
 
 class ActionGuard:

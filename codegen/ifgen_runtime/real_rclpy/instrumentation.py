@@ -32,8 +32,8 @@ from rclpy.subscription import Subscription
 from ifgen_runtime.field_types import type_name
 from ifgen_runtime.interface import InterfaceMeta
 from ifgen_runtime.mismatch.policy import NAME, VARIABLE, OnTypeMismatch, policy_of
-from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Guard
-from ifgen_runtime.mismatch.real_rclpy.watch import watch_of
+from ifgen_runtime.real_rclpy.endpoints import Endpoint, Guard
+from ifgen_runtime.real_rclpy.watch import watch_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -100,8 +100,8 @@ def _guarded(
 ) -> tuple[tuple[Any, ...], Guard]:
     """The arguments of a constructor of rclpy with a guarded handle in them, and the guard."""
     # Late, both: only for a node that asks for it.
-    from ifgen_runtime.mismatch.real_rclpy.guarded_services import guarded_client, guarded_service
-    from ifgen_runtime.mismatch.real_rclpy.guarded_subscriptions import guarded_subscription
+    from ifgen_runtime.real_rclpy.guarded_services import guarded_client, guarded_service
+    from ifgen_runtime.real_rclpy.guarded_subscriptions import guarded_subscription
 
     match role:
         case "subscription":
@@ -142,7 +142,7 @@ def _wrap_add_waitable(nodes: Any) -> None:
             return
         policy, guard = node_policy(self), None
         if policy is not OnTypeMismatch.WARN:
-            from ifgen_runtime.mismatch.real_rclpy.guarded_actions import guard_action  # as above
+            from ifgen_runtime.real_rclpy.guarded_actions import guard_action  # as above
 
             guard = guard_action(self, waitable, role, name, cls)
         _note(self, waitable, role, name, cls, policy, guard)

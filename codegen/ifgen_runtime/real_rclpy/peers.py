@@ -12,7 +12,7 @@ from typing import Any, Final
 from ifgen_runtime.adapters import adapter_for
 from ifgen_runtime.mismatch.limits import Lru
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.mismatch.real_rclpy.endpoints import Part
+from ifgen_runtime.real_rclpy.endpoints import Part
 
 _UNKNOWN: Final = "_NODE_NAME_UNKNOWN_"
 _KNOWN_HASH: Final = "RIHS01_"

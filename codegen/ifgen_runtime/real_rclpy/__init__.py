@@ -1,13 +1,13 @@
-"""Type support: what real rclpy hands to the middleware for a class, made when rclpy first asks.
+"""All that real rclpy needs: type support of our classes, and a look at who has other definitions of them.
 
-Nothing here is needed, or imported, without real rclpy.
+Nothing here is imported without real rclpy. It begins when rclpy first asks a class for its type support.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from ifgen_runtime.type_support.errors import TypeSupportError
+from ifgen_runtime.real_rclpy.binding import TypeSupportError
 
 
 def import_type_support(interface: type[Any]) -> None:
@@ -15,8 +15,8 @@ def import_type_support(interface: type[Any]) -> None:
 
     Raises TypeSupportError, which says what is missing and what to do.
     """
-    from ifgen_runtime.mismatch.real_rclpy import instrumentation  # with rclpy only, and it is running
-    from ifgen_runtime.type_support.register import give_type_support  # ctypes, and the libraries of ROS
+    from ifgen_runtime.real_rclpy import instrumentation  # with rclpy only, and it is running
+    from ifgen_runtime.real_rclpy.register import give_type_support  # with the extension, if it is there
 
     try:
         give_type_support(interface)

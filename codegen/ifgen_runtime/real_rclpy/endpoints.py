@@ -13,7 +13,7 @@ from ifgen_runtime.field_types import type_name
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
 
 if TYPE_CHECKING:
-    from ifgen_runtime.mismatch.real_rclpy.peers import Peer
+    from ifgen_runtime.real_rclpy.peers import Peer
 
 _OTHERS: Final = {
     "publisher": "subscription",

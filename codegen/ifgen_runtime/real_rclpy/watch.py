@@ -21,9 +21,9 @@ from typing import Any, Final
 from rclpy.exceptions import InvalidHandle
 
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
-from ifgen_runtime.mismatch.real_rclpy.peers import Peer, applied, differs, peers
-from ifgen_runtime.mismatch.real_rclpy.reporting import Meeting, Reporter, UnreadableBytes
+from ifgen_runtime.real_rclpy.endpoints import Endpoint, Part
+from ifgen_runtime.real_rclpy.peers import Peer, applied, differs, peers
+from ifgen_runtime.real_rclpy.reporting import Meeting, Reporter, UnreadableBytes
 
 _PERIOD: Final = 0.25
 """Seconds between two looks, at least."""

@@ -8,9 +8,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from ifgen_runtime.mismatch import explanation as explaining
-from ifgen_runtime.mismatch.explanation import explanation, in_one_line
-from ifgen_runtime.mismatch.sides import Definition, Mismatch, Side
+from ifgen_runtime.mismatch import reporting
+from ifgen_runtime.mismatch.reporting import Definition, Mismatch, Side, explanation, in_one_line
 
 MINE = Side("/monitor", "subscription", "RIHS01_" + "a" * 64, Definition({}))
 THEIRS = Side("/driver", "publisher", "RIHS01_" + "b" * 64)
@@ -29,7 +28,7 @@ def _installed(monkeypatch: pytest.MonkeyPatch, *found: Any) -> list[str]:
         asked.append(f"{group}:{name}")
         return found
 
-    monkeypatch.setattr(explaining, "entry_points", entry_points)
+    monkeypatch.setattr(reporting, "entry_points", entry_points)
     return asked
 
 

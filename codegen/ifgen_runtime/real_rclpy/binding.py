@@ -12,9 +12,8 @@ from functools import cache
 from importlib import import_module
 from typing import Any, Final
 
-from ifgen_runtime.type_support import probe
-from ifgen_runtime.type_support.errors import TypeSupportError
-from ifgen_runtime.type_support.tables import Member
+from ifgen_runtime.real_rclpy import probe
+from ifgen_runtime.real_rclpy.tables import Member
 
 _FASTRTPS: Final = "rmw_fastrtps_cpp"
 # rmw implementations that take rosidl_typesupport_fastrtps_c handles and nothing else of a message's memory.
@@ -32,6 +31,10 @@ _RCUTILS: Final = {
     "is_error_set": "rcutils_error_is_set",
     "reset_error": "rcutils_reset_error",
 }
+
+
+class TypeSupportError(RuntimeError):
+    """Real rclpy cannot be given type support for our classes here; the text says why and what to do."""
 
 
 @cache

@@ -14,15 +14,13 @@ from typing import Any, Final
 from rclpy.logging import get_logger
 
 from ifgen_runtime.field_types import type_name
-from ifgen_runtime.mismatch import listeners
-from ifgen_runtime.mismatch.explanation import explanation, in_one_line
-from ifgen_runtime.mismatch.limits import Say, SeenSet, WarningLimit
+from ifgen_runtime.mismatch.limits import SeenSet, WarningLimit
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.mismatch.real_rclpy.endpoints import Endpoint, Part
-from ifgen_runtime.mismatch.real_rclpy.peers import Peer
-from ifgen_runtime.mismatch.sides import Definition, Mismatch, Side, definition_of
+from ifgen_runtime.mismatch.reporting import Definition, Mismatch, Side, definition_of, in_one_line, report
 from ifgen_runtime.mismatch.type_description_client import Definitions, Question, node_connection
-from ifgen_runtime.type_support import register
+from ifgen_runtime.real_rclpy import register
+from ifgen_runtime.real_rclpy.endpoints import Endpoint, Part
+from ifgen_runtime.real_rclpy.peers import Peer
 
 _ASKING: Final = "_ifgen_type_mismatch"
 """The name of the hidden node that asks others, and exists only while questions are open."""
@@ -48,7 +46,7 @@ class Meeting:
 
     @property
     def key(self) -> Hashable:
-        """The pair that is told of once. If both are in this process, either may be the one that looks."""
+        """The pair that is reported once. If both are in this process, either may be the one that looks."""
         endpoint, peer = self.endpoint, self.peer
         if not peer.type_hash:
             return self.part.type_name
@@ -101,24 +99,19 @@ class Reporter:
                 self.complain(error)
 
     def _report(self, meeting: Meeting, theirs: Definition | None) -> None:
-        """Tell listeners, and the user as often as the limit has it."""
-        mismatch, endpoint = _mismatch(meeting, theirs), meeting.endpoint
-        listeners.tell(mismatch)
-        say = self._limit.count(endpoint.name)
-        logger = endpoint.node.get_logger()
-        if say is Say.NO_MORE:
-            logger.warning(
-                f"{endpoint.kind} '{endpoint.name}': more endpoints differ, which is not said any more"
-            )
-        elif say is Say.ALL and mismatch.policy == OnTypeMismatch.ADAPT:
-            logger.info(explanation(mismatch))
-        elif say is Say.ALL:
-            text = explanation(mismatch)
-            if meeting.reason:
-                text += f"\n{meeting.reason}, so nothing is exchanged."
-            if not endpoint.is_connected():
+        """Tell the listener, and log as the node of our endpoint."""
+        endpoint = meeting.endpoint
+
+        def remarks(_: str) -> str:
+            text = f"\n{meeting.reason}, so nothing is exchanged." if meeting.reason else ""
+            if meeting.policy is not OnTypeMismatch.ADAPT and not endpoint.is_connected():
                 text += "\nThe middleware has not connected them: nothing is delivered between them."
-            logger.warning(text)
+            return text
+
+        text = report(_mismatch(meeting, theirs), self._limit, remarks)
+        logger = endpoint.node.get_logger()
+        if text:
+            (logger.info if meeting.policy is OnTypeMismatch.ADAPT else logger.warning)(text)
 
     def complain(self, error: Exception) -> None:
         """Say once that something has failed, to whoever looks for it."""

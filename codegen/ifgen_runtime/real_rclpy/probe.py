@@ -11,7 +11,7 @@ from collections.abc import Callable
 from ctypes import CDLL, CFUNCTYPE, c_size_t, c_void_p, sizeof, string_at
 from typing import Any, Final
 
-from ifgen_runtime.type_support import tables
+from ifgen_runtime.real_rclpy import tables
 
 _TIME: Final = b"builtin_interfaces/msg/Time"
 _TIME_HASH: Final = "b106235e25a4c5ed35098aa0a61a3ee9c9b18d197f398b0e4206cea9acf9c197"

@@ -9,19 +9,20 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable
-from typing import Any
+from ctypes import c_char_p
+from enum import IntEnum
+from typing import Any, Final
 
 from ifgen_runtime.codec import serialize
 from ifgen_runtime.codec.choice import attached
 from ifgen_runtime.codec.decoding import decode_any
 from ifgen_runtime.errors import DeserializationError
 from ifgen_runtime.field_types import type_name
-from ifgen_runtime.type_description import describe, sources
-from ifgen_runtime.type_support import tables
-from ifgen_runtime.type_support.binding import native
-from ifgen_runtime.type_support.descriptions import Description, split
-from ifgen_runtime.type_support.introspection import introspection_handle
-from ifgen_runtime.type_support.layout import layout_of
+from ifgen_runtime.real_rclpy import tables
+from ifgen_runtime.real_rclpy.binding import member_layout, native
+from ifgen_runtime.real_rclpy.layout import DescribedField, Description, layout_of, split
+from ifgen_runtime.real_rclpy.tables import Member, Members, keep
+from ifgen_runtime.type_description import TypeId, describe, sources
 
 _CAPSULES = (
     "_TYPE_SUPPORT",
@@ -124,6 +125,93 @@ def type_tables(cls: type[Any], description: Description) -> tuple[int, int, int
         tables.type_description(description.individual, description.referenced),
         tables.type_sources(sources(cls)),
     )
+
+
+# Introspection tables: names and types of members, which Fast DDS makes its type objects from. They are no
+# memory layout: `rmw_fastrtps_cpp` reads and writes messages through callbacks only.
+
+
+class _MemberType(IntEnum):
+    """The type ids of a member in rosidl_typesupport_introspection_c/field_types.h."""
+
+    FLOAT = 1
+    DOUBLE = 2
+    LONG_DOUBLE = 3
+    CHAR = 4
+    WCHAR = 5
+    BOOLEAN = 6
+    OCTET = 7
+    UINT8 = 8
+    INT8 = 9
+    UINT16 = 10
+    INT16 = 11
+    UINT32 = 12
+    INT32 = 13
+    UINT64 = 14
+    INT64 = 15
+    STRING = 16
+    WSTRING = 17
+    MESSAGE = 18
+
+
+_MEMBER_TYPES: Final = {
+    TypeId.NESTED: _MemberType.MESSAGE,
+    TypeId.INT8: _MemberType.INT8,
+    TypeId.UINT8: _MemberType.UINT8,
+    TypeId.INT16: _MemberType.INT16,
+    TypeId.UINT16: _MemberType.UINT16,
+    TypeId.INT32: _MemberType.INT32,
+    TypeId.UINT32: _MemberType.UINT32,
+    TypeId.INT64: _MemberType.INT64,
+    TypeId.UINT64: _MemberType.UINT64,
+    TypeId.FLOAT: _MemberType.FLOAT,
+    TypeId.DOUBLE: _MemberType.DOUBLE,
+    TypeId.CHAR: _MemberType.CHAR,
+    TypeId.BOOLEAN: _MemberType.BOOLEAN,
+    TypeId.BYTE: _MemberType.OCTET,
+    TypeId.STRING: _MemberType.STRING,
+    TypeId.WSTRING: _MemberType.WSTRING,
+    TypeId.BOUNDED_STRING: _MemberType.STRING,
+    TypeId.BOUNDED_WSTRING: _MemberType.WSTRING,
+}
+
+_SOME_SIZE: Final = 8  # of a C struct that nobody allocates
+
+
+def introspection_handle(description: Description) -> int:
+    """The address of an introspection handle for the described type; nested types get theirs as well."""
+    return _handle(description, description.type_name, {})
+
+
+def _handle(description: Description, type_name: str, made: dict[str, int]) -> int:
+    if type_name not in made:
+        members = [_member(description, field, made) for field in description.fields(type_name)]
+        table = (member_layout() * len(members))(*members)
+        package, folder, name = split(type_name)
+        namespace = _text(f"{package}__{folder}")
+        table_of_all = Members(
+            namespace, _text(name), len(members), _SOME_SIZE, False, keep(table), None, None
+        )
+        made[type_name] = native().introspection(keep(table_of_all))
+    return made[type_name]
+
+
+def _member(description: Description, field: DescribedField, made: dict[str, int]) -> Member:
+    return member_layout()(
+        name=_text(field.name),
+        type_id=_MEMBER_TYPES[TypeId(field.base)],
+        string_upper_bound=field.string_capacity,
+        members=_handle(description, field.nested_type_name, made) if field.base == TypeId.NESTED else None,
+        is_array=field.is_collection,
+        array_size=field.capacity,
+        is_upper_bound=field.is_bounded,
+    )
+
+
+def _text(text: str) -> c_char_p:
+    pointer = c_char_p(text.encode())
+    keep(pointer)
+    return pointer
 
 
 # What the codec in C leaves to Python, and everything where it does not run.

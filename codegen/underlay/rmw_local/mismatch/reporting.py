@@ -1,22 +1,20 @@
-"""Says of endpoints that met that their definitions differ: once a pair, with no lock held."""
+"""Reports of endpoints that met that their definitions differ: once a pair, with no lock held."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ifgen_runtime.mismatch.explanation import explanation
-from ifgen_runtime.mismatch.limits import Say
-from ifgen_runtime.mismatch.listeners import tell
-from ifgen_runtime.mismatch.sides import Mismatch, Side, definition_of
+from ifgen_runtime.mismatch import reporting
+from ifgen_runtime.mismatch.reporting import Mismatch, Side, definition_of
 
-from rmw_local import report
+from rmw_local import report as log
 from rmw_local.message import type_name
 from rmw_local.service import ServiceEndpoint
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from ifgen_runtime.mismatch.sides import Definition
+    from ifgen_runtime.mismatch.reporting import Definition
 
     from rmw_local.mismatch.encounter import Encounter, Party
 
@@ -26,7 +24,7 @@ _SUFFIXES = ("SendGoal", "GetResult", "FeedbackMessage")  # of the names of part
 _PARTS = ("SendGoalService", "GetResultService", "FeedbackMessage")
 
 
-def tell_of(
+def report(
     encounters: Iterable[Encounter], elsewhere: Callable[[Party], Definition | None] = lambda _: None
 ) -> None:
     """Tell the listener, and log as the nodes whose policies were applied.
@@ -36,7 +34,7 @@ def tell_of(
     for encounter in encounters:
         subject = _Subject(encounter, elsewhere)
         if subject.is_said_here:
-            _tell(subject.mismatch(), encounter)
+            _report(subject.mismatch(), encounter)
 
 
 def part_of_action(encounter: Encounter) -> tuple[str, int]:
@@ -46,22 +44,20 @@ def part_of_action(encounter: Encounter) -> tuple[str, int]:
     return (name, _SUFFIXES.index(part)) if separator and action and part in _SUFFIXES else ("", 0)
 
 
-def _tell(mismatch: Mismatch, encounter: Encounter) -> None:
-    tell(mismatch)
-    node = encounter.mine.node
-    say = node.participant.warning_limit.count(mismatch.name)
-    if say is Say.NOTHING:
-        return
-    if say is Say.NO_MORE:
-        text = f"{mismatch.kind} '{mismatch.name}': more endpoints differ, which is not said any more"
-    else:
-        text = explanation(mismatch)
+def _report(mismatch: Mismatch, encounter: Encounter) -> None:
+    def remarks(said: str) -> str:
+        text = ""
         lacks_adapter = encounter.wanted == "adapt" != encounter.policy
         if lacks_adapter and not (encounter.crosses_processes and _cannot_adapt(mismatch)):
-            text += _missing(mismatch, text)
+            text += _missing(mismatch, said)
         if encounter.crosses_processes and not encounter.adapts:
             text += _between_processes(mismatch, encounter)
-    report.say(node, text, is_warning=mismatch.policy != "adapt")
+        return text
+
+    node = encounter.mine.node
+    text = reporting.report(mismatch, node.participant.warning_limit, remarks)
+    if text:
+        log.say(node, text, is_warning=mismatch.policy != "adapt")
 
 
 def _between_processes(mismatch: Mismatch, encounter: Encounter) -> str:

@@ -13,11 +13,10 @@ from ifgen_runtime.codec import serialize
 from ifgen_runtime.codec.decoding import decode_any
 from ifgen_runtime.errors import DeserializationError
 from ifgen_runtime.field_types import type_name
+from ifgen_runtime.real_rclpy.binding import native
+from ifgen_runtime.real_rclpy.layout import Description, split
+from ifgen_runtime.real_rclpy.register import give, introspection_handle, type_tables
 from ifgen_runtime.type_description import describe
-from ifgen_runtime.type_support.binding import native
-from ifgen_runtime.type_support.descriptions import Description, split
-from ifgen_runtime.type_support.introspection import introspection_handle
-from ifgen_runtime.type_support.register import give, type_tables
 
 _ANY_LAYOUT: Final = (("R1 B0._first", b""),)  # a byte, which every body has: whatever follows is left over
 

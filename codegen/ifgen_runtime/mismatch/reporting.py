@@ -1,0 +1,125 @@
+"""Two endpoints whose definitions of one type differ, as values, and the report about them.
+
+Each transport makes a `Mismatch` of a pair that met, and reports it once: to the listener, if there is one,
+and to the user by an explanation. With the toolkit that names the fields that differ, without it the hashes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Any, Final
+
+from ifgen_runtime.mismatch.limits import Say, WarningLimit
+from ifgen_runtime.type_description import describe, sources
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_GROUP: Final = "ifgen.mismatch"
+"""The entry points of what explains a mismatch: `explain(mismatch)`, with a Mismatch as a dictionary."""
+
+_SHOWN: Final = len("RIHS01_") + 16
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """A definition of a type: its description (REP-2016), and the sources that are known.
+
+    `document` has the keys `type_description` and `referenced_type_descriptions`. `sources` are (type name,
+    `msg`, `srv`, `action`, `idl` or `implicit`, text).
+    """
+
+    document: dict[str, Any] = field(repr=False)
+    sources: tuple[tuple[str, str, str], ...] = field(default=(), repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One of the two endpoints.
+
+    `node` is the full name of its node. `role` is `publisher`, `subscription`, `service client`, `service
+    server`, `action client` or `action server`. `type_hash` is `RIHS01_...`, or empty where it is unknown.
+    """
+
+    node: str
+    role: str
+    type_hash: str
+    definition: Definition | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Mismatch:
+    """Two endpoints that met on `name`, a topic, a service or an action, as their `kind` says.
+
+    `mine` is an endpoint of this process. `policy` is its node's, after it was applied: a node that was to
+    adapt and has no adapter refuses.
+    """
+
+    kind: str
+    name: str
+    type_name: str
+    policy: str
+    mine: Side
+    theirs: Side
+
+
+def definition_of(cls: type[Any]) -> Definition:
+    """The definition that a class was generated from."""
+    return Definition(describe(cls), tuple(sources(cls)))
+
+
+listener: Callable[[Mismatch], None] | None = None
+"""Called for each pair of endpoints whose definitions differ, on any thread, with no lock held."""
+
+
+def report(mismatch: Mismatch, limit: WarningLimit, remarks: Callable[[str], str]) -> str:
+    """Pass a mismatch to the listener, and return the text for the log of its node, which may be empty.
+
+    Each transport calls this once a pair. `remarks` are added to the explanation, which they get.
+    """
+    if listener is not None:
+        listener(mismatch)
+    match limit.count(mismatch.name):
+        case Say.ALL:
+            text = explanation(mismatch)
+            return text + remarks(text)
+        case Say.NO_MORE:
+            return f"{mismatch.kind} '{mismatch.name}': more endpoints differ, which is not said any more"
+        case _:
+            return ""
+
+
+def explanation(mismatch: Mismatch) -> str:
+    """The text of the warning, without a line end: one line, or more if the toolkit is installed.
+
+    It reads files, and takes a part of a second: do not call it in a callback that others wait for. Nothing
+    is raised, whatever the definitions are.
+    """
+    if mismatch.mine.type_hash and mismatch.theirs.type_hash:
+        try:
+            for found in entry_points(group=_GROUP, name="explain"):
+                return str(found.load()(asdict(mismatch)))
+        except Exception:  # a broken toolkit must not stop a node
+            pass
+    return in_one_line(mismatch)
+
+
+def in_one_line(mismatch: Mismatch) -> str:
+    """The same without the toolkit."""
+    mine, theirs = mismatch.mine, mismatch.theirs
+    if not (mine.type_hash and theirs.type_hash):
+        unknown = mine if theirs.type_hash else theirs
+        return (
+            f"{mismatch.kind} '{mismatch.name}': {unknown.node} ({unknown.role}) does not say which "
+            f"definition of {mismatch.type_name} it has, as nodes before ROS 2 Iron. Nobody can tell "
+            "whether it is another one"
+        )
+    return (
+        f"{mismatch.kind} '{mismatch.name}': {theirs.node} ({theirs.role}) has another definition of "
+        f"{mismatch.type_name} than {mine.node} ({mine.role}): {_hash(theirs)}, not {_hash(mine)}"
+    )
+
+
+def _hash(side: Side) -> str:
+    return f"{side.type_hash[:_SHOWN]}..."
