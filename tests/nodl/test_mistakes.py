@@ -215,7 +215,7 @@ DEFAULTS = [
 
 OPTIONS = [
     ("unknown-key", options("⟦styles⟧: asyncio"), "did you mean `style`"),
-    ("unknown-value", options("style: ⟦async⟧"), "callbacks, lifecycle or asyncio"),
+    ("unknown-value", options("style: ⟦async⟧"), "callbacks, lifecycle, asyncio or nodl"),
     ("wrong-value", options("style: ⟦5⟧"), "one of the texts"),
     ("unknown-value", options("on_type_mismatch: ⟦refused⟧"), "warn, refuse or adapt"),
     ("wrong-value", options("on_type_mismatch: ⟦true⟧"), "one of the texts"),

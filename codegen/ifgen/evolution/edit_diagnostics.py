@@ -289,7 +289,12 @@ def _name(node: NodeDescription) -> str:
 
 
 def _class(node: NodeDescription) -> str:
-    kind = {"callbacks": "of callbacks", "lifecycle": "with a lifecycle", "asyncio": "of coroutines"}
+    kind = {
+        "callbacks": "of callbacks",
+        "lifecycle": "with a lifecycle",
+        "asyncio": "of coroutines",
+        "nodl": "with the names of nodl_generator_py",
+    }
     return f"{node.node_class} {kind[node.style]}"
 
 

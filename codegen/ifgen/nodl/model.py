@@ -15,9 +15,13 @@ from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, Source, Span
 from ifgen.reading.package_xml import Dependency
 
-Style = Literal["callbacks", "lifecycle", "asyncio"]
+Style = Literal["callbacks", "lifecycle", "asyncio", "nodl"]
+"""The kind of a node class: a plain Node, a LifecycleNode, or a Node whose callbacks are coroutines.
+
+With `nodl` it has the names that nodl_generator_py gives: `pub_ID`, `on_ID`, `execute_ID`, `param_listener_`.
+"""
+
 MismatchPolicy = Literal["warn", "refuse", "adapt"]
-"""The kind of a node class: a plain Node, a LifecycleNode, or a Node whose callbacks are coroutines."""
 
 ClockName = Literal["ros", "steady", "system"]
 ScalarValue: TypeAlias = bool | int | float | str

@@ -186,8 +186,10 @@ def _callbacks(expected: NodeModule) -> Mapping[str, tuple[str, str]]:
 def _missing(
     expected: NodeModule, methods: Mapping[str, ast.stmt], class_: ast.ClassDef, source: Source
 ) -> Iterator[Diagnostic]:
+    in_base = {name for server in expected.action_servers for name in (server.accept, server.cancel)}
+    optional = in_base if expected.style == "nodl" else set[str]()
     for name, (signature, caller) in _callbacks(expected).items():
-        if name not in methods:
+        if name not in methods and name not in optional:
             yield Diagnostic(
                 "missing-method",
                 f"{class_.name} has no method {name}, which {caller} calls: it cannot start",

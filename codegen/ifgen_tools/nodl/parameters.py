@@ -50,12 +50,13 @@ def parameters_of(session: Session, node: str) -> tuple[RunningParameter, ...] |
     """The parameters of a node; None if it has no parameter services or they do not answer."""
     try:
         with remote_parameters(session, node, _PATIENCE) as remote:
-            return tuple(_parameter(descriptor, value) for descriptor, value in remote.all())
+            return tuple(running_parameter(descriptor, value) for descriptor, value in remote.all())
     except ToolError:
         return None
 
 
-def _parameter(descriptor: ParameterDescriptor, value: ParameterValue | None) -> RunningParameter:
+def running_parameter(descriptor: ParameterDescriptor, value: ParameterValue | None) -> RunningParameter:
+    """A parameter from its descriptor and its value, None for one without a value."""
     type_ = _TYPES.get(value.type) if value else None
     limits: list[Any] = [*descriptor.floating_point_range, *descriptor.integer_range]
     return RunningParameter(

@@ -18,7 +18,10 @@ from ifgen_tools.nodl.conformance import Choices, Report, Side, compare
 
 HERE = Path(__file__).parent
 needs_rclpy = pytest.mark.skipif(importlib.util.find_spec("rclpy") is None, reason="there is no real rclpy")
-TRANSPORTS = ["local", pytest.param("rclpy", marks=[needs_rclpy, pytest.mark.slow])]
+TRANSPORTS = [
+    pytest.param("local", marks=pytest.mark.slow),
+    pytest.param("rclpy", marks=[needs_rclpy, pytest.mark.slow]),
+]
 DOCUMENT = yaml.safe_load((HERE / "conforming.nodl.yaml").read_text())
 Tree = dict[str, Any]
 Edit = tuple[str, str, set[str]]
@@ -182,6 +185,35 @@ def test_rules_that_are_none(tmp_path: Path, rule: str) -> None:
 
     with pytest.raises(UsageError, match="says nothing to ignore"):
         report(tmp_path, DOCUMENT, Side((), ()), Choices(ignore=(rule,)))
+
+
+@pytest.mark.slow
+def test_the_command_takes_remaps_from_a_launch_file(tmp_path: Path) -> None:
+    launch = f"""
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    program = {str(HERE / "conforming.py")!r}
+    return LaunchDescription([Node(executable=program, name="walker", namespace="robot", remappings=[("/plain", "/b")])])
+"""
+    (tmp_path / "robot.launch.py").write_text(launch)
+    document = copy.deepcopy(DOCUMENT)
+    document["publishers"][0]["name"] = "/plain"
+    (tmp_path / "w.nodl.yaml").write_text(yaml.safe_dump(document))
+
+    def conform(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", "ifgen", "nodl", "conform", "--file", "w.nodl.yaml", *words]
+        program = ["--transport", "local", "--", str(HERE / "conforming.py")]
+        return subprocess.run(
+            [*command, *program], capture_output=True, text=True, timeout=60, cwd=tmp_path, check=False
+        )
+
+    done = conform("--launch", "robot.launch.py")
+    assert (done.returncode, "conforms" in done.stdout) == (0, True), done.stdout + done.stderr
+    done = conform("--format", "github")
+    assert done.returncode == 1
+    assert "::error file=w.nodl.yaml,line=" in done.stdout
 
 
 def test_remaps(tmp_path: Path, seen: Side) -> None:

@@ -86,7 +86,8 @@ def _module(node: NodeDescription, texts: NodeTexts, of_base: Imports, title: st
 
 def _bases(node: NodeDescription, imports: Imports, *, is_abstract: bool) -> str:
     if node.base is None or node.base in {NODE, LIFECYCLE_NODE}:
-        node_class = imports("LifecycleNode" if node.style == "lifecycle" else "Node")
+        is_lifecycle = node.style == "lifecycle" or node.base == LIFECYCLE_NODE
+        node_class = imports("LifecycleNode" if is_lifecycle else "Node")
     else:
         node_class = imports.base(node.base)
     return f"{node_class}, {imports('ABC')}" if is_abstract else node_class
@@ -100,7 +101,8 @@ def _publisher_method(node: NodeDescription) -> str:
 
 def _attributes(node: NodeDescription, texts: NodeTexts, imports: Imports) -> Iterator[tuple[str, str, str]]:
     """Name, annotation and docstring of every entity."""
-    publisher_class = "LifecyclePublisher" if node.style == "lifecycle" else "Publisher"
+    is_lifecycle = node.style == "lifecycle" or (node.base is not None and node.base.is_lifecycle)
+    publisher_class = "LifecyclePublisher" if is_lifecycle else "Publisher"
     for publisher in texts.publishers:
         yield publisher.attribute, f"{imports(publisher_class)}[{publisher.message}]", publisher.documentation
     for subscription in texts.subscriptions:

@@ -130,7 +130,9 @@ class NodeTexts:
         accept, cancel, execute = members.methods
         action = self._imports.interface(endpoint.type_name)
         handle = [f"goal_handle: {self._imports('ServerGoalHandle')}[{action}]"]
-        accepted, cancelled = self._imports("GoalResponse"), self._imports("CancelResponse")
+        # In the style `nodl`, goals are accepted in the base.
+        imports = self._of_clients if self._node.style == "nodl" else self._imports
+        accepted, cancelled = imports("GoalResponse"), imports("CancelResponse")
         return ActionServerText(
             attribute=members.attribute,
             accept=accept,

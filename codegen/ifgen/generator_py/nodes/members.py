@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import count
@@ -26,6 +27,16 @@ _METHODS: Final = {
     Category.ACTION_SERVER: ("accept_", "cancel_", "execute_"),
     Category.ACTION_CLIENT: ("send_",),
 }
+
+_NODL_ATTRIBUTES: Final = {
+    Category.PUBLISHER: "pub_",
+    Category.SUBSCRIPTION: "sub_",
+    Category.SERVICE_SERVER: "srv_",
+    Category.SERVICE_CLIENT: "cli_",
+    Category.ACTION_SERVER: "action_srv_",
+    Category.ACTION_CLIENT: "action_cli_",
+}
+"""The attributes that nodl_generator_py makes."""
 
 # Names of rclpy's nodes, and of ours. A test compares them with rclpy.
 _CREATED = (
@@ -88,7 +99,8 @@ class NodeMembers:
 def members_of(node: NodeDescription) -> NodeMembers:
     """Name everything in a node's class, each name once."""
     taken = set(RESERVED)
-    endpoints = {(e.category, e.name): _members(e, taken) for e in node.endpoints}
+    of_nodl = node.style == "nodl"
+    endpoints = {(e.category, e.name): _members(e, taken, of_nodl=of_nodl) for e in node.endpoints}
     of_timers = {name for timer in node.timers for name in timer.publishes}
     unsent = [publisher for publisher in node.publishers if publisher.name not in of_timers]
     timers = [*node.timers, *(_timer_of(p) for p in unsent if p.qos and p.qos.deadline_ns)]
@@ -99,16 +111,17 @@ def members_of(node: NodeDescription) -> NodeMembers:
     )
 
 
-def _members(endpoint: Endpoint, taken: set[str]) -> Members:
+def _members(endpoint: Endpoint, taken: set[str], *, of_nodl: bool) -> Members:
     kind = _SINGULAR[endpoint.category]
     prefixes = _METHODS[endpoint.category]
+    if of_nodl and endpoint.category is Category.SERVICE_SERVER:
+        prefixes = _METHODS[Category.SUBSCRIPTION]
 
     def names(stem: str) -> Members:
-        return Members(
-            f"{stem}_{kind}", tuple(prefix + stem for prefix in prefixes), f"{stem}_{kind}_QOS".upper()
-        )
+        attribute = f"{_NODL_ATTRIBUTES[endpoint.category]}{stem}" if of_nodl else f"{stem}_{kind}"
+        return Members(attribute, tuple(prefix + stem for prefix in prefixes), f"{stem}_{kind}_QOS".upper())
 
-    word = stem(endpoint.name)
+    word = re.sub(r"[\W_]+", "_", endpoint.name).strip("_") if of_nodl else stem(endpoint.name)
     # ROS hides such names, and rclpy's nodes call what is theirs so.
     candidates = map(names, _stems(f"hidden{word}" if word.startswith("_") else word, kind))
     return next(m for m in candidates if _take({m.attribute, *m.methods, m.constant}, taken))

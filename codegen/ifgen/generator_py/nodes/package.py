@@ -67,6 +67,8 @@ def _artifacts(
         yield _artifact(package, f"{inner}/py.typed", "marker", **variables)
     if any(node.style == "asyncio" for node in package.nodes):
         yield _artifact(package, f"{inner}/_waiting.py", "waiting.py", **variables)
+    if any(node.style == "nodl" for node in package.nodes):
+        yield _artifact(package, f"{inner}/generated/__init__.py", "marker", **variables)
     for node in package.nodes:
         yield from _node_artifacts(package, node, inner)
     for part in package.parts:
@@ -80,7 +82,13 @@ def _node_artifacts(package: NodePackage, node: NodeDescription, inner: str) -> 
         yield _artifact(package, f"config/{node.name}.yaml", "config.yaml", node=files)
         parameters = parameters_module(node)
         yield _artifact(package, f"{inner}/_{node.name}_parameters.py", "parameters.py", node=parameters)
-    yield _artifact(package, f"{inner}/_{node.name}_base.py", "base.py", node=base_module(node))
+    base = base_module(node)
+    yield _artifact(package, f"{inner}/_{node.name}_base.py", "base.py", node=base)
+    if node.style == "nodl":
+        generated = f"{inner}/generated/{node.name}_base"
+        yield _artifact(package, f"{generated}.py", "nodl_base.py", node=base)
+        if declared(node):
+            yield _artifact(package, f"{generated}_parameters.py", "nodl_parameters.py", node=base)
 
 
 def _documents(package: NodePackage, node: NodeDescription, files: NodeFiles) -> Iterator[Artifact]:

@@ -55,6 +55,12 @@ TEMPLATES: Final[Mapping[str, Entry]] = {
         "<package>/<package>/_<node>_parameters.py", {"node": ParametersModule}
     ),
     "node_package/base.py.j2": Entry("<package>/<package>/_<node>_base.py", {"node": NodeModule}),
+    "node_package/nodl_base.py.j2": Entry(
+        "<package>/<package>/generated/<node>_base.py", {"node": NodeModule}
+    ),
+    "node_package/nodl_parameters.py.j2": Entry(
+        "<package>/<package>/generated/<node>_base_parameters.py", {"node": NodeModule}
+    ),
     "node_package/node.py.j2": Entry("<package>/<package>/<node>.py, once", {"node": NodeModule}),
     "node_package/checks.py.j2": Entry("<package>/<package>/<checks>.py, once", {"package": ChecksModule}),
     "test_package/interfaces.py.j2": Entry(

@@ -39,6 +39,8 @@ TAKEN: Final = {
 
 def node_tests(node: NodeDescription, registry: Registry) -> NodeTests | None:
     """The tests of a node, in the groups that its description names, or all; None if there are none."""
+    if node.style == "nodl" and node.base is not None and node.base.is_lifecycle:
+        return None  # its publishers are silent until something activates the node
     tests = _Writer(node, registry).tests()
     endpoints = (tests.publishers, tests.subscriptions, tests.services, tests.clients)
     others = (tests.action_servers, tests.action_clients, tests.parameters, tests.timers)
