@@ -114,6 +114,11 @@ class Process:
             reader.join(1.0)  # longer only if something that it started keeps the pipe open
         for master in self._masters:
             os.close(master)
+        pipes = (self._popen.stdin, self._popen.stdout, self._popen.stderr)
+        for pipe in () if any(reader.is_alive() for reader in self._readers) else pipes:
+            if pipe is not None:
+                with suppress(OSError):
+                    pipe.close()
         self._post(lambda: on_end(code))
 
 

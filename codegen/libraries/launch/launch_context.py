@@ -274,6 +274,7 @@ class LaunchContext:
     def add_completion_future(self, completion_future: asyncio.Future[Any]) -> None:
         """Keep the launch alive until a future is done."""
         self._completions = [*self.pending_futures(), completion_future]
+        completion_future.add_done_callback(lambda _: self.host.post(lambda: None))  # it may be the last one
 
     def pending_futures(self) -> list[asyncio.Future[Any]]:
         """Return the futures that keep the launch alive."""

@@ -147,13 +147,13 @@ class LaunchService:
 
     async def _run(self, shutdown_when_idle: bool) -> None:
         assert self._wake is not None, "it is made before"
-        while not (self._context.is_shutdown and self._is_idle()):
+        while not (self._context.is_shutdown and await self._stays_idle()):
             if self._calls:
                 self._make(self._calls.popleft())
                 if len(self._calls) % 8 == 0:  # tasks of coroutines are to go on, too
                     await asyncio.sleep(0)
                 continue
-            if shutdown_when_idle and self._is_idle():
+            if shutdown_when_idle and not self._context.is_shutdown and await self._stays_idle():
                 self._make(lambda: self._shut_down(Shutdown(reason="idle")))
                 continue
             self._wake.clear()
@@ -167,6 +167,13 @@ class LaunchService:
             self.fail(error)
         except Exception as error:  # of a handler or of a condition that users wrote
             self.fail(explained(error))
+
+    async def _stays_idle(self) -> bool:
+        """Whether there is nothing to do, also after what follows from tasks that have just ended."""
+        if not self._is_idle():
+            return False
+        await asyncio.sleep(0)
+        return self._is_idle()
 
     def _is_idle(self) -> bool:
         waits = any(timed.call is not None for timed in self._timed)
