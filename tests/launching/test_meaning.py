@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 import yaml
 from ifgen_runtime import parameter_yaml
-from ifgen_tools.launching.errors import LaunchError
+from launch._errors import LaunchError
+from launch.launch_context import Files
 
-from .conftest import LaunchHost, Recorded
+from .conftest import Recorded
 
 HEAD = """
 import os
@@ -230,17 +231,14 @@ def test_nodes_get_namespaces_remappings_and_parameters_from_outside_to_inside(
 
 def test_values_of_parameters_keep_their_types(record: Recorded, tmp_path: Path) -> None:
     """Texts such as `y` and `off` are truths for rcl, unless they are in quotes."""
-    from .conftest import Recorder
-
     written: list[str] = []
-    whole = Recorder.text_file
 
-    def keep(self: Recorder, text: str) -> str:
+    def keep(self: Files, text: str) -> str:
         written.append(text)
-        return whole(self, text)
+        return "file"
 
-    Recorder.text_file = keep  # type: ignore[method-assign]
-    try:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Files, "text", keep)
         record(
             "a.launch.py",
             described(
@@ -249,8 +247,6 @@ def test_values_of_parameters_keep_their_types(record: Recorded, tmp_path: Path)
                 "'g': {'h': ['x', 'off']}, 'i': [TextSubstitution(text='p'), 'q']}])"
             ),
         )
-    finally:
-        Recorder.text_file = whole  # type: ignore[method-assign]
     assert "a: 'y'" in written[0]
     values = yaml.safe_load(written[0])["/**"]["ros__parameters"]
     assert values == {
@@ -284,11 +280,11 @@ def test_a_text_is_read_as_nodes_read_it(
     """In each kind of launch file; in Python, a text is one unless a substitution makes it."""
     given: list[Any] = []
 
-    def keep(self: object, parameters: dict[str, Any], node: str) -> str:
+    def keep(context: object, parameters: dict[str, Any], node: str) -> str:
         given.append(parameters["p"])
         return "file"
 
-    monkeypatch.setattr(LaunchHost, "parameter_file", keep)
+    monkeypatch.setattr("launch_ros.actions.node.written", keep)
     made = f"LaunchConfiguration('x', default='{text}')"
     record("a.launch.py", described(f"Node(executable='true', parameters=[{{'p': {made}}}])"))
     record("a.launch.xml", f"<launch><node exec='true'><param name='p' value='{text}'/></node></launch>")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import random
 
 import pytest
-from ifgen_tools.launching.errors import LaunchError
-from ifgen_tools.launching.reading.texts import parse
+from launch._errors import LaunchError
+from launch.frontend.parse_substitution import parse
 
 PLACE = ("a.launch.xml", 7)
 

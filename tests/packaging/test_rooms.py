@@ -54,12 +54,7 @@ SMALL = {
     "ifgen_runtime.importing": "messages load it, and must stay light",
     "ifgen_runtime.slot_types": "loaded by who asks for SLOT_TYPES",
     "ifgen_runtime.undecided": "the names that adapters of users import",
-    "ifgen_tools.launching.reading.python_file": "one kind of launch file",
-    "ifgen_tools.launching.reading.xml_file": "one kind of launch file",
     "ifgen_tools.running.lockstep": "the one module of the tools that knows the middleware's virtual time",
-    "launch.actions._outputs": "one kind of destination for each of rcl's names, apart from processes",
-    "message_filters._chain": "one filter, under the name of upstream's class",
-    "message_filters._subscriber": "one filter, under the name of upstream's class",
 }
 """Modules of fewer than 60 lines that one other imports, and why they stand by themselves."""
 

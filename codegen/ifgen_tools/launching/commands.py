@@ -6,7 +6,7 @@ import importlib
 import os
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -17,9 +17,7 @@ from ifgen.command_kit.tool import ToolError, did_you_mean
 from ifgen_tools import completion
 
 if TYPE_CHECKING:
-    from launch import LaunchDescription
-
-    from ifgen_tools.launching.running.host import LaunchHost
+    from launch import LaunchDescription, LaunchService
 
 # Late imports: what a launch needs, and `launch` itself, which is found once the transport is chosen.
 
@@ -93,41 +91,44 @@ def launch(
             transport = _TRANSPORTS.get(word, transport)
     chosen = activate(transport, output)
     path = _path(paths, output)
-    from launch import LaunchContext
+    from launch import LaunchDescription, LaunchService
+    from launch._errors import LaunchError, explained
     from launch.actions import IncludeLaunchDescription
 
-    from ifgen_tools.launching.errors import LaunchError, explained
-    from ifgen_tools.launching.running.host import LaunchHost
+    from ifgen_tools.launching.packages import UserPackages
 
-    context = LaunchContext(argv=given, noninteractive=noninteractive)
+    service = LaunchService(argv=given, noninteractive=noninteractive)
+    context = service.context
+    context.packages = UserPackages(output, chosen)
     configurations = {"launch-prefix": launch_prefix, "launch-prefix-filter": launch_prefix_filter}
     context.launch_configurations |= {name: value for name, value in configurations.items() if value}
     if show_all:
         os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
-    host = LaunchHost(context, output, chosen)
-    if show_args or prints:
-        return _describe(host, path, show_args=show_args)
     arguments = [word.split(":=", 1) for word in given]
     include = IncludeLaunchDescription(path, launch_arguments=[(name, value) for name, value in arguments])
     include.place = None
     try:
         description = include.launch_description_source.get_launch_description(context)
-    except LaunchError:
-        raise
+        if show_args or prints:
+            print("\n".join(_described(service, description, path, arguments, show_args=show_args)))
+            return 0
     except Exception as error:
-        raise explained(error) from error
+        reason = error if isinstance(error, LaunchError) else explained(error)
+        raise ToolError(reason.message, reason.help) from error
     for name, _ in arguments:
-        if remark := _unknown(name, description, path, host):
+        if remark := _unknown(name, description, path, service):
             print(f"warning: {remark}", file=sys.stderr, flush=True)
     elsewhere.tell(chosen)
-    return host.run(include)
+    service.include_launch_description(LaunchDescription([include]))
+    service.run()
+    return service.exit_code
 
 
-def _unknown(name: str, description: LaunchDescription, path: str, host: LaunchHost) -> str:
+def _unknown(name: str, description: LaunchDescription, path: str, service: LaunchService) -> str:
     """A remark about an argument that no file declares, and that this one does not mention; else empty."""
     from ifgen_tools.launching.describing import arguments
 
-    known = [argument.name for argument in arguments(description, path, host)]
+    known = [argument.name for argument in arguments(description, path, service.context)]
     text = Path(path).read_text(encoding="utf-8", errors="replace")
     if name in {*known, "transport"} or re.search(rf"\b{re.escape(name)}\b", text):
         return ""
@@ -193,13 +194,19 @@ def _path(paths: list[str], output: Path) -> str:
     return str(matching[0])
 
 
-def _describe(host: LaunchHost, path: str, *, show_args: bool) -> int:
-    from ifgen_tools.launching.describing import arguments, arguments_in_words, tree
+def _described(
+    service: LaunchService,
+    description: LaunchDescription,
+    path: str,
+    given: list[list[str]],
+    *,
+    show_args: bool,
+) -> Iterable[str]:
+    from launch.launch_introspector import tree
 
-    try:
-        description = host.read(path)
-        lines = arguments_in_words(arguments(description, path, host)) if show_args else tree(description)
-        print("\n".join(lines))
-    finally:
-        host.close()
-    return 0
+    from ifgen_tools.launching.describing import arguments, arguments_in_words
+
+    service.context.launch_configurations |= dict(given)
+    if not show_args:
+        return tree(description)
+    return arguments_in_words(arguments(description, path, service.context))

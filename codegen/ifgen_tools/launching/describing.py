@@ -1,4 +1,4 @@
-"""Descriptions for people: their arguments, and what they contain."""
+"""The arguments of descriptions, for people."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ from pathlib import Path
 
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
-from launch.launch_context import Host
 
 _MAX_DEPTH = 50
 
 
-def arguments(description: LaunchDescription, path: str, host: Host) -> list[DeclareLaunchArgument]:
+def arguments(
+    description: LaunchDescription, path: str, context: LaunchContext
+) -> list[DeclareLaunchArgument]:
     """Return the arguments of a file, and of the files that it includes by paths known before it runs."""
     found: dict[str, DeclareLaunchArgument] = {}
-    for each in _files(description, path, host, 0):
+    for each in _files(description, path, context, 0):
         for argument in each.get_launch_arguments():
             found.setdefault(argument.name, argument)
     return list(found.values())
@@ -42,36 +43,20 @@ def arguments_in_words(found: Iterable[DeclareLaunchArgument]) -> Iterator[str]:
         yield "* argument(s) which are only used if specific conditions occur"
 
 
-def tree(entity: LaunchDescriptionEntity, *, first: str = "", rest: str = "") -> Iterator[str]:
-    """The lines of `--print`: an entity, and what is inside."""
-    condition = getattr(entity, "condition", None)
-    yield f"{first}{entity.describe()}{f' [{condition.describe()}]' if condition else ''}"
-    inside: list[tuple[str, LaunchDescriptionEntity]] = [
-        ("", each) for each in entity.describe_sub_entities()
-    ]
-    for case, entities in entity.describe_conditional_sub_entities():
-        inside += [(f"({case}) ", each) for each in entities]
-    for number, (case, each) in enumerate(inside, 1):
-        is_last = number == len(inside)
-        first_mark, rest_mark = ("└── ", "    ") if is_last else ("├── ", "│   ")
-        yield from tree(each, first=rest + first_mark + case, rest=rest + rest_mark)
-
-
-def _files(description: LaunchDescription, path: str, host: Host, depth: int) -> Iterator[LaunchDescription]:
+def _files(
+    description: LaunchDescription, path: str, context: LaunchContext, depth: int
+) -> Iterator[LaunchDescription]:
     yield description
     if depth >= _MAX_DEPTH:
         return
-    context = LaunchContext()
-    context.host = host
     file = Path(path).absolute()
-    context.extend_locals(
-        {"current_launch_file_path": str(file), "current_launch_file_directory": str(file.parent)}
-    )
+    here = {"current_launch_file_path": str(file), "current_launch_file_directory": str(file.parent)}
     for include in _includes(description):
         with suppress(Exception):  # it needs what is known only when the launch runs
+            context.extend_locals(here)
             source = include.launch_description_source
             included = source.get_launch_description(context)
-            yield from _files(included, source.location, host, depth + 1)
+            yield from _files(included, source.location, context, depth + 1)
 
 
 def _includes(entity: LaunchDescriptionEntity) -> Iterator[IncludeLaunchDescription]:

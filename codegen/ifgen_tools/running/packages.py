@@ -24,6 +24,13 @@ from ifgen.reading import package_xml
 _INDEX: Final = "share/ament_index/resource_index/packages"
 _ENTRY_POINT: Final = "ifgen_tools.running.entry_point"
 
+_LIBRARIES: Final = {
+    "joint_state_publisher": ("robot_state_publisher", ["robot_state_publisher.joint_state_publisher"]),
+    "robot_state_publisher": ("robot_state_publisher", ["robot_state_publisher.robot_state_publisher"]),
+    "tf2_ros": ("tf2_ros", ["tf2_ros.static_transform_publisher"]),
+}
+"""The packages of programs among ifgen's libraries: the folder of each, and the modules of its programs."""
+
 
 @dataclass(frozen=True, slots=True)
 class Executable:
@@ -47,11 +54,18 @@ class Package:
 def find(name: str, output: Path, near: Iterable[Path] = ()) -> Package | None:
     """Return a package: the generated one in `output`, sources here or `near`, or what is installed.
 
-    At last, one of ifgen's own humanoid. None if there is none.
+    At last, one of ifgen's libraries, or of its own humanoid. None if there is none.
     """
-    for look in (_generated(output / name), *_sources(name, near), _distributed(name), *_indexed(name)):
+    places = list(near)
+    for look in (_generated(output / name), *_sources(name, places), _distributed(name), *_indexed(name)):
         if look is not None:
             return look
+    is_humanoid = any(resources.humanoid() in place.parents for place in places)
+    if name in _LIBRARIES and not is_humanoid:  # whose joint_state_publisher is another one
+        share, modules = _LIBRARIES[name]
+        found = {each.rpartition(".")[2]: each for each in modules}
+        programs = {short: Executable(short, ("-m", module)) for short, module in found.items()}
+        return Package(name, resources.libraries() / share, programs)
     return _generated(resources.bundled_nodes() / name) or _source(name, resources.humanoid())
 
 

@@ -1,10 +1,8 @@
 """Launch descriptions: what to start, with which arguments, and what to do when something happens.
 
-The part of launch of ROS 2 Jazzy that `ifgen launch` runs, under upstream's names. The objects describe.
-`LaunchContext.host` is whoever runs them.
+This is launch of ROS 2 Jazzy, under upstream's names. `LaunchService` runs descriptions, and so does
+`ifgen launch`.
 """
-
-from typing import NoReturn
 
 from launch import actions as actions
 from launch import conditions as conditions
@@ -16,17 +14,20 @@ from launch import substitutions as substitutions
 from launch.action import Action
 from launch.condition import Condition
 from launch.event import Event
-from launch.event_handler import EventHandler
+from launch.event_handler import BaseEventHandler, EventHandler
 from launch.launch_context import LaunchContext
 from launch.launch_description import LaunchDescription
 from launch.launch_description_entity import LaunchDescriptionEntity
 from launch.launch_description_source import LaunchDescriptionSource
+from launch.launch_introspector import LaunchIntrospector
+from launch.launch_service import LaunchService
 from launch.some_entities_type import SomeEntitiesType
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
 
 __all__ = [
     "Action",
+    "BaseEventHandler",
     "Condition",
     "Event",
     "EventHandler",
@@ -34,15 +35,9 @@ __all__ = [
     "LaunchDescription",
     "LaunchDescriptionEntity",
     "LaunchDescriptionSource",
+    "LaunchIntrospector",
+    "LaunchService",
     "SomeEntitiesType",
     "SomeSubstitutionsType",
     "Substitution",
 ]
-
-
-def __getattr__(name: str) -> NoReturn:
-    if name in {"LaunchService", "LaunchIntrospector"}:
-        raise AttributeError(
-            f"ifgen's launch has no {name}: `ifgen launch FILE` runs and prints descriptions"
-        )
-    raise AttributeError(f"module 'launch' has no attribute {name!r}")

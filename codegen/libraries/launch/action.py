@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 from launch.condition import Condition
 from launch.launch_description_entity import LaunchDescriptionEntity
 
 if TYPE_CHECKING:
+    from launch.frontend import Entity, Parser
     from launch.launch_context import LaunchContext
 
 
@@ -18,6 +19,14 @@ class Action(LaunchDescriptionEntity):
     def __init__(self, *, condition: Condition | None = None) -> None:
         super().__init__()
         self.condition = condition
+
+    @classmethod
+    def parse(cls, entity: Entity, parser: Parser) -> tuple[type[Self], dict[str, Any]]:
+        """Return the class, and its arguments as an element of XML or YAML has them. Raises LaunchError.
+
+        A class of users calls it for what its base takes, and adds its own.
+        """
+        return cls, parser.arguments(cls, entity)
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
         """Do it unless its condition says otherwise, and return what to visit next."""

@@ -13,24 +13,33 @@ if TYPE_CHECKING:
     from launch.launch_context import LaunchContext
 
 
-class EventHandler:
-    """Entities to visit when an event comes that `matcher` accepts, each time or once."""
+class BaseEventHandler:
+    """Handles events that `matcher` accepts, each time or once."""
 
-    def __init__(
-        self,
-        *,
-        matcher: Callable[[Event], bool],
-        entities: SomeEntitiesType | None = None,
-        handle_once: bool = False,
-    ) -> None:
+    def __init__(self, *, matcher: Callable[[Event], bool], handle_once: bool = False) -> None:
         self._matcher = matcher
-        self._entities = as_list(entities)
         self._handle_once = handle_once
 
     @property
     def entities(self) -> Sequence[LaunchDescriptionEntity]:
-        """The entities to visit."""
-        return self._entities
+        """The entities to visit, as far as they are known."""
+        return []
+
+    @property
+    def handler_description(self) -> str:
+        """Return what it does, for people."""
+        return f"<{len(self.entities)} entities>"
+
+    @property
+    def matcher_description(self) -> str:
+        """Return what it matches, for people."""
+        return getattr(self._matcher, "__name__", repr(self._matcher))
+
+    def describe(self) -> tuple[str, list[LaunchDescriptionEntity]]:
+        """Return what it is, for people, and the entities to visit."""
+        matcher, handler = self.matcher_description, self.handler_description
+        text = f"{type(self).__name__}(matcher='{matcher}', handler='{handler}')"
+        return text, list(self.entities)
 
     @property
     def handle_once(self) -> bool:
@@ -46,6 +55,25 @@ class EventHandler:
         context.extend_locals({"event": event})
         if self._handle_once:
             context.unregister_event_handler(self)
+        return self.entities
+
+
+class EventHandler(BaseEventHandler):
+    """Entities to visit when an event comes that `matcher` accepts, each time or once."""
+
+    def __init__(
+        self,
+        *,
+        matcher: Callable[[Event], bool],
+        entities: SomeEntitiesType | None = None,
+        handle_once: bool = False,
+    ) -> None:
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self._entities = as_list(entities)
+
+    @property
+    def entities(self) -> Sequence[LaunchDescriptionEntity]:
+        """The entities to visit."""
         return self._entities
 
 

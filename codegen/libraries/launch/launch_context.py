@@ -1,19 +1,28 @@
-"""The surroundings of a description that runs: configurations, environment, handlers, and who runs it."""
+"""The surroundings of a description that runs: its state, and three that serve it.
+
+`host` runs it, `packages` finds packages and programs, and `files` keeps files for the time of the launch.
+"""
 
 from __future__ import annotations
 
+import asyncio
+import itertools
 import os
+import tempfile
 from collections.abc import Callable, Mapping, MutableMapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, Protocol
 
+from launch._packages import InstalledPackages
+
 if TYPE_CHECKING:
     from launch.action import Action
-    from launch.actions import ExecuteProcess
+    from launch.actions import ExecuteLocal
     from launch.event import Event
-    from launch.event_handler import EventHandler
-    from launch.launch_description import LaunchDescription
+    from launch.event_handler import BaseEventHandler
     from launch.substitution import Substitution
 
 
@@ -45,29 +54,53 @@ class Timer(Protocol):
     def cancel(self) -> None:
         """Do not make it."""
 
+    def fire(self) -> None:
+        """Make it now, unless it was made or cancelled."""
+
 
 class Host(Protocol):
-    """Runs descriptions: `ifgen launch`."""
+    """Runs a description in one thread: `LaunchService`."""
 
-    def start(self, action: ExecuteProcess, process: ProcessToStart) -> None:
-        """Start a process, and emit the events of its life."""
+    def post(self, call: Callable[[], None]) -> None:
+        """Make a call after what is going on; from any thread."""
 
-    def emit(self, event: Event) -> None:
-        """Let the handlers have an event, after what is going on."""
-
-    def completed(self, action: Action) -> None:
-        """Note that an action has come to its end."""
-
-    def later(self, seconds: float, call: Callable[[], None], *, until_shutdown: bool) -> Timer:
-        """Make a call when so much time has passed."""
+    def later(self, seconds: float | None, call: Callable[[], None], *, until_shutdown: bool) -> Timer:
+        """Make a call when so much time has passed; None: when it is fired."""
         ...
+
+    def at_end(self, call: Callable[[], None]) -> None:
+        """Make a call when the launch is over."""
 
     def visit(self, entities: Sequence[Any]) -> None:
         """Visit entities now."""
 
-    def read(self, path: str) -> LaunchDescription:
-        """Return the description in a launch file: Python, XML or YAML."""
-        ...
+    def emit(self, event: Event) -> None:
+        """Let the handlers have an event, after what is going on."""
+
+    def handle(self, event: Event) -> None:
+        """Let the handlers have an event now."""
+
+    def completed(self, action: Action) -> None:
+        """Note that an action has come to its end."""
+
+    def start(self, actions: Sequence[ExecuteLocal], process: ProcessToStart) -> None:
+        """Start a process, and emit the events of its life to each of these actions."""
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """How a program starts that `ifgen run` runs, and how it hears that nobody waits for it any more."""
+
+    environment: Mapping[str, str]
+    during: AbstractContextManager[None]
+    dismiss: Callable[[], None]
+
+
+class Packages(Protocol):
+    """Finds packages and programs."""
+
+    def near(self, path: str) -> None:
+        """Note that a launch file is read: what is beside it can be found."""
 
     def share(self, package: str) -> str:
         """Return the folder of shared files of a package."""
@@ -81,35 +114,39 @@ class Host(Protocol):
         """Return the command of an executable of a package."""
         ...
 
-    def program(self, path: str) -> Sequence[str]:
-        """Return the command of a program that is named by its file, or found on PATH."""
+    def program(self, path: str, search: str | None) -> Sequence[str]:
+        """Return the command of a program that is named by its file, or found in a list of folders."""
         ...
 
-    def parameter_file(self, parameters: Mapping[str, Any], node: str) -> str:
-        """Write parameters of a node to a file, and return its path."""
+    def start(self, command: Sequence[str], files: Files) -> Start | None:
+        """Return how to start a command if it is `ifgen run`; else None."""
         ...
 
-    def text_file(self, text: str) -> str:
-        """Write a text to a file that is there as long as the launch is, and return its path."""
-        ...
 
-    def fill(self, text: str, path: str) -> str:
-        """Return the text of a file with its substitutions, such as `$(var x)`, performed."""
-        ...
+class Files:
+    """Files that are there as long as the launch is."""
 
-    def change_state(self, node_name: str, transition_id: int) -> None:
-        """Ask a managed node for a transition."""
+    def __init__(self) -> None:
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._numbers = itertools.count()
 
-    def watch_state(self, node_name: str, call: Callable[[Any], None]) -> None:
-        """Call with each `TransitionEvent` of a managed node."""
+    def new(self, name: str) -> str:
+        """Return the path of a file that nobody else has."""
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="ifgen-launch-")
+        return str(Path(self._folder.name) / f"{next(self._numbers)}-{name}")
 
-    def log(self, level: str, name: str, text: str) -> None:
-        """Print a line about the launch: its level, such as INFO, and whom it is about."""
+    def text(self, text: str, name: str = "text.yaml") -> str:
+        """Write a text to a file, and return its path."""
+        path = self.new(name)
+        Path(path).write_text(text, encoding="utf-8")
+        return path
 
-    @property
-    def log_directory(self) -> str:
-        """The folder of the log files of this launch."""
-        ...
+    def close(self) -> None:
+        """Remove them."""
+        if self._folder is not None:
+            self._folder.cleanup()
+            self._folder = None
 
 
 class LaunchContext:
@@ -121,8 +158,13 @@ class LaunchContext:
         self.launch_configurations: dict[str, Any] = {}
         self.environment: MutableMapping[str, str] = os.environ
         self.is_shutdown = False
-        self.event_handlers: list[EventHandler] = []
+        self.event_handlers: list[BaseEventHandler] = []
+        self.packages: Packages = InstalledPackages()
+        self.files = Files()
+        self.asyncio_loop: asyncio.AbstractEventLoop | None = None
         self._host: Host | None = None
+        self._globals: dict[str, Any] = {}
+        self._completions: list[asyncio.Future[Any]] = []
         self._locals: dict[str, Any] = {}
         self._stack: list[dict[str, Any]] = []
         self._configurations: list[dict[str, Any]] = []
@@ -132,7 +174,9 @@ class LaunchContext:
     def host(self) -> Host:
         """The one that runs the description. Raises RuntimeError where nobody does."""
         if self._host is None:
-            raise RuntimeError("this context belongs to no launch: `ifgen launch FILE` makes one that does")
+            raise RuntimeError(
+                "this context belongs to no launch: `ifgen launch FILE` and LaunchService make one that does"
+            )
         return self._host
 
     @host.setter
@@ -142,20 +186,29 @@ class LaunchContext:
     @property
     def locals(self) -> SimpleNamespace:
         """The values of the event that is handled, such as `event`, and of the file that is visited."""
-        return SimpleNamespace(**self._locals)
+        return SimpleNamespace(**self.get_locals_as_dict())
 
     def get_locals_as_dict(self) -> dict[str, Any]:
-        """Return the locals by name."""
+        """Return the locals by name, and the globals that they do not hide."""
+        return {**self._globals, **self._locals}
+
+    def get_locals(self) -> dict[str, Any]:
+        """Return the locals by name, without the globals."""
         return dict(self._locals)
+
+    def get_globals_as_dict(self) -> dict[str, Any]:
+        """Return the globals by name."""
+        return dict(self._globals)
 
     def extend_locals(self, extensions: Mapping[str, Any]) -> None:
         """Add locals, or replace those of these names."""
         self._locals.update(extensions)
 
     def extend_globals(self, extensions: Mapping[str, Any]) -> None:
-        """Add what stays when an event has been handled."""
-        for names in (self._locals, *self._stack):
-            names.update(extensions)
+        """Add what stays when an event has been handled. Raises RuntimeError for what a local hides."""
+        for name in extensions.keys() & self._locals.keys():
+            raise RuntimeError(f"a global '{name}' would be hidden by the local of this name")
+        self._globals.update(extensions)
 
     def remove_locals(self, *names: str) -> None:
         """Remove locals that may be there."""
@@ -198,11 +251,11 @@ class LaunchContext:
         """Return the text of a substitution."""
         return substitution.perform(self)
 
-    def register_event_handler(self, event_handler: EventHandler, append: bool = False) -> None:
+    def register_event_handler(self, event_handler: BaseEventHandler, append: bool = False) -> None:
         """Add a handler before all others, or after them."""
         self.event_handlers.insert(len(self.event_handlers) if append else 0, event_handler)
 
-    def unregister_event_handler(self, event_handler: EventHandler) -> None:
+    def unregister_event_handler(self, event_handler: BaseEventHandler) -> None:
         """Remove a handler. Raises ValueError if it is not there."""
         self.event_handlers.remove(event_handler)
 
@@ -213,3 +266,16 @@ class LaunchContext:
     def emit_event_sync(self, event: Event) -> None:
         """Let the handlers have an event, after what is going on."""
         self.host.emit(event)
+
+    async def emit_event(self, event: Event) -> None:
+        """Let the handlers have an event, after what is going on."""
+        self.host.emit(event)
+
+    def add_completion_future(self, completion_future: asyncio.Future[Any]) -> None:
+        """Keep the launch alive until a future is done."""
+        self._completions = [*self.pending_futures(), completion_future]
+        completion_future.add_done_callback(lambda _: self.host.post(lambda: None))  # it may be the last one
+
+    def pending_futures(self) -> list[asyncio.Future[Any]]:
+        """Return the futures that keep the launch alive."""
+        return [future for future in self._completions if not future.done()]

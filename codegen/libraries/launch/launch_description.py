@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from launch.event_handler import as_list
 from launch.launch_description_entity import LaunchDescriptionEntity
+from launch.logging import get_logger
 
 if TYPE_CHECKING:
     from launch.action import Action
@@ -43,9 +44,7 @@ class LaunchDescription(LaunchDescriptionEntity):
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
         """Return its entities."""
         if self.deprecated_reason is not None:
-            context.host.log(
-                "WARNING", "launch", f"this launch description is deprecated: {self.deprecated_reason}"
-            )
+            get_logger().warning(f"this launch description is deprecated: {self.deprecated_reason}")
         return self.entities
 
     def describe_sub_entities(self) -> Sequence[LaunchDescriptionEntity]:

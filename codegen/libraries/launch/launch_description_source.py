@@ -35,8 +35,16 @@ class LaunchDescriptionSource:
         """Return the description, read from its file at the first call."""
         if self._description is None:
             self._expanded = perform_substitutions(context, self._location)
-            self._description = context.host.read(self._expanded)
+            context.packages.near(self._expanded)
+            self._description = self._get_launch_description(self._expanded)
         return self._description
+
+    def _get_launch_description(self, location: str) -> LaunchDescription:
+        """Return the description in a file. Raises LaunchError."""
+        # It imports descriptions, which import their sources.
+        from launch.launch_description_sources._reading import read
+
+        return read(location)
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
         """Return the description if it is there already."""

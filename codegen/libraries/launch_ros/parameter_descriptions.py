@@ -5,12 +5,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
 from ifgen_runtime import parameter_yaml
+from launch._errors import explained
+from launch.conditions import evaluate_condition_expression
 from launch.launch_context import LaunchContext
+from launch.logging import get_logger
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
 from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions, performed
@@ -44,9 +47,9 @@ class ParameterFile:
     def evaluate(self, context: LaunchContext) -> Path:
         """Return the path of the file, or of a copy without substitutions. Raises RuntimeError."""
         path = perform_substitutions(context, self.param_file)
-        if performed(context, self.allow_substs).lower() not in {"true", "1"}:
+        if not evaluate_condition_expression(context, self.allow_substs):
             return Path(path)
-        file: str = context.host.text_file(_filled(path, context))
+        file = context.files.text(_filled(path, context))
         entries: dict[str, parameter_yaml.Entry] = {}
         try:
             parameter_yaml.read_file(file, lambda node: entries.setdefault(node, {}))
@@ -170,4 +173,27 @@ def _filled(path: str, context: LaunchContext) -> str:
         text = Path(path).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise RuntimeError(f"cannot read the parameter file '{path}': {error}") from None
-    return context.host.fill(text, path)
+    # It imports all actions, and with them this module.
+    from launch.frontend.parse_substitution import parse
+
+    filled: list[str] = []
+    for number, line in enumerate(text.splitlines(keepends=True), 1):
+        place = (path, number)
+        try:
+            filled.append(perform_substitutions(context, parse(line, place)) if "$(" in line else line)
+        except Exception as error:
+            raise explained(error, place) from error
+    return "".join(filled)
+
+
+def written(context: LaunchContext, parameters: Mapping[str, Any], node: str) -> str:
+    """Write parameters of a node to a file, and return its path. Raises RuntimeError."""
+    for name, value in parameters.items():
+        if isinstance(value, bytes):
+            raise RuntimeError(f"the parameter '{name}' is bytes, which no parameter file can hold")
+        if parameter_yaml.is_beyond_files(value):
+            get_logger().warning(
+                f"the parameter '{name}' is an empty list, which no parameter file can hold: "
+                "the node keeps its default value"
+            )
+    return context.files.text(parameter_yaml.file_text(node, parameters))

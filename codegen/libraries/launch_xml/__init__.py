@@ -1,1 +1,7 @@
-"""Launch files in XML: `ifgen launch` reads them, so here is only what other launch files import."""
+"""Launch files in XML."""
+
+from launch.frontend import Entity
+
+from launch_xml.parser import Parser
+
+__all__ = ["Entity", "Parser"]

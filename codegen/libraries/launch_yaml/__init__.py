@@ -1,1 +1,7 @@
-"""Launch files in YAML: `ifgen launch` reads them, so here is only what other launch files import."""
+"""Launch files in YAML."""
+
+from launch.frontend import Entity
+
+from launch_yaml.parser import Parser
+
+__all__ = ["Entity", "Parser"]

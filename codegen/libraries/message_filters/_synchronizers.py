@@ -8,7 +8,7 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.time import Time
 
-from message_filters import _stamps
+from message_filters._filters import stamp_of
 from message_filters.simple_filter import SimpleFilter
 
 _Queue = dict[int, Any]
@@ -73,7 +73,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
 
     def add(self, msg: Any, my_queue: _Queue, my_queue_index: int | None = None) -> None:
         """Take a message of one input in."""
-        stamp = _stamps.stamp_of(
+        stamp = stamp_of(
             msg,
             self.allow_headerless,
             "message_filters_approx",

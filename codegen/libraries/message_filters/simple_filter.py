@@ -17,14 +17,14 @@ class SimpleFilter:
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
 
-    def registerCallback(self, callback: Callable[..., Any], *args: Any) -> int:
+    def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:
         """Call a function with each output, and `args` after it. Returns a number to unregister it by."""
-        receiver = getattr(callback, "__self__", None)
+        receiver = getattr(cb, "__self__", None)
         if isinstance(receiver, SimpleFilter):
             receiver._source = self
         # Upstream counts those that are there, so that one may take the place of another after a removal.
         connection = max(self.callbacks, default=-1) + 1
-        self.callbacks[connection] = (callback, args)
+        self.callbacks[connection] = (cb, args)
         return connection
 
     def signalMessage(self, *msg: Any) -> None:

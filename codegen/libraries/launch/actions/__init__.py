@@ -1,12 +1,13 @@
 """Actions: what launch descriptions do."""
 
-from launch.actions._arguments import (
-    DeclareLaunchArgument,
-    SetLaunchConfiguration,
-    UnsetLaunchConfiguration,
-)
 from launch.actions._environment import (
     AppendEnvironmentVariable,
+    PopEnvironment,
+    PopLaunchConfigurations,
+    PushEnvironment,
+    PushLaunchConfigurations,
+    ResetEnvironment,
+    ResetLaunchConfigurations,
     SetEnvironmentVariable,
     UnsetEnvironmentVariable,
 )
@@ -18,25 +19,33 @@ from launch.actions._events import (
     TimerAction,
     UnregisterEventHandler,
 )
-from launch.actions._groups import GroupAction, IncludeLaunchDescription, OpaqueFunction
-from launch.actions._processes import ExecuteProcess
-from launch.actions._scopes import (
-    PopEnvironment,
-    PopLaunchConfigurations,
-    PushEnvironment,
-    PushLaunchConfigurations,
-    ResetEnvironment,
-    ResetLaunchConfigurations,
+from launch.actions._groups import (
+    ForEach,
+    ForLoop,
+    GroupAction,
+    IncludeLaunchDescription,
+    OpaqueCoroutine,
+    OpaqueFunction,
 )
+from launch.actions.declare_launch_argument import (
+    DeclareLaunchArgument,
+    SetLaunchConfiguration,
+    UnsetLaunchConfiguration,
+)
+from launch.actions.execute_process import ExecuteLocal, ExecuteProcess
 
 __all__ = [
     "AppendEnvironmentVariable",
     "DeclareLaunchArgument",
     "EmitEvent",
+    "ExecuteLocal",
     "ExecuteProcess",
+    "ForEach",
+    "ForLoop",
     "GroupAction",
     "IncludeLaunchDescription",
     "LogInfo",
+    "OpaqueCoroutine",
     "OpaqueFunction",
     "PopEnvironment",
     "PopLaunchConfigurations",

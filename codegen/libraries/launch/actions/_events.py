@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from launch.action import Action
 from launch.condition import Condition
+from launch.conditions import evaluate_condition_expression
 from launch.event import Event
 from launch.event_handler import EventHandler, as_list
 from launch.events import Shutdown as ShutdownEvent
+from launch.events import TimerEvent
 from launch.launch_context import LaunchContext, Timer
 from launch.launch_description_entity import LaunchDescriptionEntity
+from launch.logging import get_logger
 from launch.some_substitutions_type import SomeSubstitutionsType
-from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions, performed
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
 
 class EmitEvent(Action):
@@ -116,13 +119,20 @@ class TimerAction(Action):
             seconds = float(text)
         except ValueError:
             raise RuntimeError(f"the period of a timer must be a number of seconds, got '{text}'") from None
-        until_shutdown = performed(context, self.cancel_on_shutdown).lower() in {"true", "1"}
+        until_shutdown = evaluate_condition_expression(context, self.cancel_on_shutdown)
 
         def come() -> None:
+            context.host.handle(TimerEvent(timer_action=self))
             context.host.visit(self.actions)
             context.host.completed(self)
 
-        self._timer = context.host.later(max(seconds, 0.0), come, until_shutdown=until_shutdown)
+        self._timer = self.start(context, max(seconds, 0.0), come, until_shutdown=until_shutdown)
+
+    def start(
+        self, context: LaunchContext, seconds: float, call: Callable[[], None], *, until_shutdown: bool
+    ) -> Timer:
+        """Start to wait, by the clock of the machine."""
+        return context.host.later(seconds, call, until_shutdown=until_shutdown)
 
 
 class LogInfo(Action):
@@ -134,4 +144,4 @@ class LogInfo(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Print it."""
-        context.host.log("INFO", "launch.user", perform_substitutions(context, self.msg))
+        get_logger("launch.user").info("%s", perform_substitutions(context, self.msg))

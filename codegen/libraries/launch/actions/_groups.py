@@ -5,13 +5,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import asyncio
+import inspect
+from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from launch.action import Action
-from launch.actions._arguments import SetLaunchConfiguration
-from launch.actions._scopes import (
+from launch.actions._environment import (
     PopEnvironment,
     PopLaunchConfigurations,
     PushEnvironment,
@@ -19,6 +20,7 @@ from launch.actions._scopes import (
     ResetEnvironment,
     ResetLaunchConfigurations,
 )
+from launch.actions.declare_launch_argument import SetLaunchConfiguration
 from launch.condition import Condition
 from launch.event_handler import as_list
 from launch.launch_context import LaunchContext
@@ -27,7 +29,9 @@ from launch.launch_description_source import LaunchDescriptionSource
 from launch.launch_description_sources import AnyLaunchDescriptionSource
 from launch.some_entities_type import SomeEntitiesType
 from launch.some_substitutions_type import SomeSubstitutionsType
-from launch.utilities import performed
+from launch.substitution import Substitution
+from launch.substitutions import TextSubstitution
+from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions, performed
 
 _OF_FILES = ("current_launch_file_path", "current_launch_file_directory")
 
@@ -153,3 +157,104 @@ class OpaqueFunction(Action):
     def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
         """Call it, and return its entities."""
         return as_list(self.function(context, *self.args, **self.kwargs))
+
+
+class OpaqueCoroutine(Action):
+    """A coroutine that is called with the context, unless it is to be ignored, and keeps the launch alive."""
+
+    def __init__(
+        self,
+        *,
+        coroutine: Callable[..., Awaitable[None]],
+        args: Iterable[Any] | None = None,
+        kwargs: Mapping[str, Any] | None = None,
+        ignore_context: bool = False,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        if not inspect.iscoroutinefunction(coroutine):
+            raise TypeError(f"OpaqueCoroutine expects a coroutine function, got {coroutine!r}")
+        self.coroutine = coroutine
+        self.args = list(args or ())
+        self.kwargs = dict(kwargs or {})
+        self.ignore_context = ignore_context
+        self._task: asyncio.Task[None] | None = None
+
+    def ends_later(self) -> bool:
+        """Return True: it goes on until the coroutine returns."""
+        return True
+
+    def get_asyncio_future(self) -> asyncio.Future[None] | None:
+        """Return the task of the coroutine; None before it is executed."""
+        return self._task
+
+    def execute(self, context: LaunchContext) -> None:
+        """Start it. A shutdown cancels it, and what it raises is an error of the description."""
+        first = [] if self.ignore_context else [context]
+        assert context.asyncio_loop is not None, "the launch runs"
+        self._task = context.asyncio_loop.create_task(self.coroutine(*first, *self.args, **self.kwargs))
+        context.add_completion_future(self._task)
+        self._task.add_done_callback(lambda task: context.host.post(lambda: self._finish(task, context)))
+
+    def _finish(self, task: asyncio.Task[None], context: LaunchContext) -> None:
+        if not task.cancelled():
+            task.result()
+        context.host.completed(self)
+
+
+class ForEach(Action):
+    """Entities for each set of values in `{'a': 1};{'a': 2}`, from a function of these values."""
+
+    def __init__(
+        self,
+        input_values: SomeSubstitutionsType,
+        *,
+        function: Callable[..., SomeEntitiesType | None],
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.input_values = normalize_to_list_of_substitutions(input_values)
+        self.function = function
+
+    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+        """Call the function for each set. Raises ValueError."""
+        import yaml  # few descriptions have one
+
+        found: list[LaunchDescriptionEntity] = []
+        text = perform_substitutions(context, self.input_values)
+        for each in (part for part in text.split(";") if part.strip()):
+            values = yaml.safe_load(each)
+            if not isinstance(values, dict):
+                raise ValueError(
+                    f"ForEach expects sets such as {{'a': 1}}, with ';' between them, got '{each}'"
+                )
+            found += as_list(self.function(**values))
+        return found
+
+
+class ForLoop(Action):
+    """Entities for each number from 0 below a length, from a function of the number."""
+
+    def __init__(
+        self,
+        length: int | SomeSubstitutionsType,
+        *,
+        function: Callable[[int], SomeEntitiesType | None],
+        name: str = "i",
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.length: list[Substitution] = (
+            [TextSubstitution(text=str(length))]
+            if isinstance(length, int)
+            else normalize_to_list_of_substitutions(length)
+        )
+        self.function = function
+        self.name = name
+
+    def execute(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+        """Call the function for each number. Raises ValueError."""
+        text = perform_substitutions(context, self.length)
+        if not text.strip().isdecimal():
+            raise ValueError(f"the length of ForLoop must be a whole number, got '{text}'")
+        return [each for number in range(int(text)) for each in as_list(self.function(number))]

@@ -14,31 +14,54 @@ from launch.launch_context import LaunchContext
 from launch.launch_description_entity import LaunchDescriptionEntity
 from launch.some_entities_type import SomeEntitiesType
 
-__all__ = ["OnExecutionComplete", "OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"]
+__all__ = [
+    "OnActionEventBase",
+    "OnExecutionComplete",
+    "OnProcessExit",
+    "OnProcessIO",
+    "OnProcessStart",
+    "OnShutdown",
+]
 
 Target: TypeAlias = Action | Callable[[Any], bool] | None
 Answer: TypeAlias = SomeEntitiesType | Callable[[Any, LaunchContext], SomeEntitiesType | None]
 
 
-class _Answering(EventHandler):
-    """Answers events of a kind, of one action, of those that a function accepts, or of all."""
+class OnActionEventBase(EventHandler):
+    """Answers events of a kind: of one action, of those that a function accepts, or of all."""
 
     def __init__(
-        self, kind: type[Event], target: Target, answer: Answer, *, handle_once: bool = False
+        self,
+        *,
+        action_matcher: Target,
+        on_event: Answer,
+        target_event_cls: type[Event],
+        target_action_cls: type[Action] = Action,
+        handle_once: bool = False,
     ) -> None:
-        def matcher(event: Any) -> bool:
-            if not isinstance(event, kind):
-                return False
-            if target is None:
-                return True
-            if isinstance(target, LaunchDescriptionEntity):
-                return getattr(event, "action", None) is target
-            return target(getattr(event, "action", event))
+        if not (
+            action_matcher is None
+            or callable(action_matcher)
+            or isinstance(action_matcher, target_action_cls)
+        ):
+            raise TypeError(
+                f"{type(self).__name__} expects an {target_action_cls.__name__} or a function of one, "
+                f"got {action_matcher!r}"
+            )
 
-        self._answer = answer if callable(answer) else None
-        self.target = target
+        def matcher(event: Any) -> bool:
+            if not isinstance(event, target_event_cls):
+                return False
+            if action_matcher is None:
+                return True
+            if isinstance(action_matcher, LaunchDescriptionEntity):
+                return getattr(event, "action", None) is action_matcher
+            return action_matcher(getattr(event, "action", event))
+
+        self._answer = on_event if callable(on_event) else None
+        self.target = action_matcher
         super().__init__(
-            matcher=matcher, entities=None if callable(answer) else answer, handle_once=handle_once
+            matcher=matcher, entities=None if callable(on_event) else on_event, handle_once=handle_once
         )
 
     def handle(self, event: Event, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
@@ -47,40 +70,57 @@ class _Answering(EventHandler):
         return entities if self._answer is None else as_list(self._answer(event, context))
 
 
-class OnProcessStart(_Answering):
+class OnProcessStart(OnActionEventBase):
     """Answers the start of processes."""
 
     def __init__(self, *, target_action: Target = None, on_start: Answer, handle_once: bool = False) -> None:
-        super().__init__(ProcessStarted, target_action, on_start, handle_once=handle_once)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_start,
+            target_event_cls=ProcessStarted,
+            handle_once=handle_once,
+        )
 
 
-class OnProcessExit(_Answering):
+class OnProcessExit(OnActionEventBase):
     """Answers the end of processes."""
 
     def __init__(self, *, target_action: Target = None, on_exit: Answer, handle_once: bool = False) -> None:
-        super().__init__(ProcessExited, target_action, on_exit, handle_once=handle_once)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_exit,
+            target_event_cls=ProcessExited,
+            handle_once=handle_once,
+        )
 
 
-class OnExecutionComplete(_Answering):
+class OnExecutionComplete(OnActionEventBase):
     """Answers the end of actions."""
 
     def __init__(
         self, *, target_action: Target = None, on_completion: Answer, handle_once: bool = False
     ) -> None:
-        super().__init__(ExecutionComplete, target_action, on_completion, handle_once=handle_once)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=on_completion,
+            target_event_cls=ExecutionComplete,
+            handle_once=handle_once,
+        )
 
 
-class OnShutdown(_Answering):
+class OnShutdown(OnActionEventBase):
     """Answers the shutdown of the launch."""
 
     def __init__(self, *, on_shutdown: Answer, handle_once: bool = False) -> None:
-        super().__init__(Shutdown, None, on_shutdown, handle_once=handle_once)
+        super().__init__(
+            action_matcher=None, on_event=on_shutdown, target_event_cls=Shutdown, handle_once=handle_once
+        )
 
 
 Listener: TypeAlias = Callable[[ProcessIO], SomeEntitiesType | None]
 
 
-class OnProcessIO(_Answering):
+class OnProcessIO(OnActionEventBase):
     """Answers what processes write."""
 
     def __init__(
@@ -93,7 +133,12 @@ class OnProcessIO(_Answering):
         handle_once: bool = False,
     ) -> None:
         def answer(event: ProcessIO, context: LaunchContext) -> SomeEntitiesType | None:
-            listener = on_stdout if event.from_stdout else on_stderr
+            listener = (on_stdin, on_stdout, on_stderr)[event.fd]
             return None if listener is None else listener(event)
 
-        super().__init__(ProcessIO, target_action, answer, handle_once=handle_once)
+        super().__init__(
+            action_matcher=target_action,
+            on_event=answer,
+            target_event_cls=ProcessIO,
+            handle_once=handle_once,
+        )

@@ -10,8 +10,17 @@ from launch.events import process
 
 if TYPE_CHECKING:
     from launch.action import Action
+    from launch.actions import TimerAction
+    from launch.launch_description import LaunchDescription
 
-__all__ = ["ExecutionComplete", "Shutdown", "matches_action", "process"]
+__all__ = [
+    "ExecutionComplete",
+    "IncludeLaunchDescription",
+    "Shutdown",
+    "TimerEvent",
+    "matches_action",
+    "process",
+]
 
 
 class Shutdown(Event):
@@ -31,6 +40,24 @@ class ExecutionComplete(Event):
 
     def __init__(self, *, action: Action) -> None:
         self.action = action
+
+
+class IncludeLaunchDescription(Event):
+    """A description is to be visited."""
+
+    name = "launch.events.IncludeLaunchDescription"
+
+    def __init__(self, launch_description: LaunchDescription) -> None:
+        self.launch_description = launch_description
+
+
+class TimerEvent(Event):
+    """The time of a timer has come."""
+
+    name = "launch.events.TimerEvent"
+
+    def __init__(self, *, timer_action: TimerAction) -> None:
+        self.timer_action = timer_action
 
 
 def matches_action(target_action: Action) -> Callable[[Action], bool]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 from launch.launch_context import LaunchContext
@@ -23,11 +24,11 @@ def truth(context: LaunchContext, subs: Sequence[Substitution]) -> bool:
 
 
 def as_truth(text: str, error: Callable[[str], Exception]) -> bool:
-    """Return the truth in a text; raise this error if there is none."""
+    """Return the truth in a text, yes/no and on/off as well; raise this error if there is none."""
     match text.strip().lower():
-        case "true" | "1":
+        case "true" | "1" | "yes" | "on":
             return True
-        case "false" | "0":
+        case "false" | "0" | "no" | "off":
             return False
         case _:
             raise error(f"expected 'true', 'false', '1' or '0', got '{text}'")
@@ -121,9 +122,8 @@ class EqualsSubstitution(Substitution):
     def holds(self, context: LaunchContext) -> bool:
         """Return whether they are the same."""
         left, right = perform_substitutions(context, self.left), perform_substitutions(context, self.right)
-        truths = {"true": True, "1": True, "false": False, "0": False}
-        if left.lower() in truths and right.lower() in truths:
-            return truths[left.lower()] is truths[right.lower()]
+        with suppress(ValueError):
+            return as_truth(left, ValueError) is as_truth(right, ValueError)
         try:
             return abs(float(left) - float(right)) <= 1e-9 * max(abs(float(left)), abs(float(right)))
         except ValueError:
@@ -150,13 +150,17 @@ class _OfMany(Substitution):
         """Return its operands."""
         return f"{type(self).__name__}({' '.join(map(described, self.args))})"
 
+    def truths(self, context: LaunchContext) -> list[bool]:
+        """Return the truth of each, also after the one that decides. Raises SubstitutionFailure."""
+        return [truth(context, each) for each in self.args]
+
 
 class AnySubstitution(_OfMany):
     """Truths of which one holds at least."""
 
     def perform(self, context: LaunchContext) -> str:
         """Return `true` or `false`. Raises SubstitutionFailure."""
-        return _word(any(truth(context, each) for each in self.args))
+        return _word(any(self.truths(context)))
 
 
 class AllSubstitution(_OfMany):
@@ -164,7 +168,7 @@ class AllSubstitution(_OfMany):
 
     def perform(self, context: LaunchContext) -> str:
         """Return `true` or `false`. Raises SubstitutionFailure."""
-        return _word(all(truth(context, each) for each in self.args))
+        return _word(all(self.truths(context)))
 
 
 class IfElseSubstitution(Substitution):
@@ -176,6 +180,8 @@ class IfElseSubstitution(Substitution):
         if_value: SomeSubstitutionsType = "",
         else_value: SomeSubstitutionsType = "",
     ) -> None:
+        if if_value == "" and else_value == "":
+            raise RuntimeError("IfElseSubstitution needs an if_value or an else_value")
         self.condition = normalize_to_list_of_substitutions(condition)
         self.if_value = normalize_to_list_of_substitutions(if_value)
         self.else_value = normalize_to_list_of_substitutions(else_value)
@@ -192,6 +198,8 @@ class IfElseSubstitution(Substitution):
 
 
 def _normalized(value: Any) -> list[Substitution]:
+    if value is None:
+        return []
     return normalize_to_list_of_substitutions(str(value) if isinstance(value, int | float) else value)
 
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from launch.launch_context import LaunchContext
+from launch.logging import launch_config
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
 from launch.substitutions.substitution_failure import SubstitutionFailure
@@ -78,7 +79,7 @@ class LaunchLogDir(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the absolute path."""
-        return context.host.log_directory
+        return launch_config.log_dir
 
 
 class FindExecutable(Substitution):

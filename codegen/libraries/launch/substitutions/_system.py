@@ -9,6 +9,7 @@ import socket
 import subprocess
 
 from launch.launch_context import LaunchContext
+from launch.logging import get_logger
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
 from launch.substitutions.substitution_failure import SubstitutionFailure
@@ -72,9 +73,7 @@ class Command(Substitution):
         if done.stderr and mode == "fail":
             raise SubstitutionFailure(f"the command '{command}' wrote to stderr: {done.stderr.strip()}")
         if done.stderr and mode == "warn":
-            context.host.log(
-                "WARNING", "launch", f"the command '{command}' wrote to stderr: {done.stderr.strip()}"
-            )
+            get_logger().warning(f"the command '{command}' wrote to stderr: {done.stderr.strip()}")
         return done.stdout + (done.stderr if mode == "capture" else "")
 
 

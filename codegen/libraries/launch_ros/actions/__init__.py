@@ -8,17 +8,22 @@ from launch_ros.actions._defaults import (
     SetROSLogDir,
     SetUseSimTime,
 )
-from launch_ros.actions._lifecycle import LifecycleNode, LifecycleTransition
-from launch_ros.actions._node import Node
+from launch_ros.actions.composable_node_container import ComposableNodeContainer, LoadComposableNodes
+from launch_ros.actions.lifecycle_node import LifecycleNode, LifecycleTransition
+from launch_ros.actions.node import Node
+from launch_ros.actions.ros_timer import RosTimer
 
 PushROSNamespace = PushRosNamespace
 
 __all__ = [
+    "ComposableNodeContainer",
     "LifecycleNode",
     "LifecycleTransition",
+    "LoadComposableNodes",
     "Node",
     "PushROSNamespace",
     "PushRosNamespace",
+    "RosTimer",
     "SetParameter",
     "SetParametersFromFile",
     "SetROSLogDir",

@@ -10,9 +10,8 @@ from launch.launch_context import LaunchContext
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.utilities import performed
 
-from launch_ros._names import absolute, joined
-from launch_ros._parameters import evaluated, value_of
 from launch_ros.parameter_descriptions import ParameterFile
+from launch_ros.utilities import evaluate_one, make_namespace_absolute, prefix_namespace, value_of
 
 
 class PushRosNamespace(Action):
@@ -25,8 +24,8 @@ class PushRosNamespace(Action):
     def execute(self, context: LaunchContext) -> None:
         """Push it. Raises RuntimeError."""
         outer = context.launch_configurations.get("ros_namespace")
-        found = joined(outer, performed(context, self.namespace))
-        context.launch_configurations["ros_namespace"] = absolute(found or "")
+        found = prefix_namespace(outer, performed(context, self.namespace))
+        context.launch_configurations["ros_namespace"] = make_namespace_absolute(found or "")
 
 
 class SetRemap(Action):
@@ -77,7 +76,7 @@ class SetParametersFromFile(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Add it."""
-        _add(context, "global_params", str(evaluated(context, self.filename)))
+        _add(context, "global_params", str(evaluate_one(context, self.filename)))
 
 
 class SetROSLogDir(Action):

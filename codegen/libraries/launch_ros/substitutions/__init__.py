@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import shlex
 
-from launch.launch_context import LaunchContext
+from launch.launch_context import LaunchContext, Packages
 from launch.some_substitutions_type import SomeSubstitutionsType
 from launch.substitution import Substitution
-from launch.substitutions import PathJoinSubstitution, SubstitutionFailure
+from launch.substitutions import PathJoinSubstitution, PathSubstitution, SubstitutionFailure
 from launch.utilities import described, normalize_to_list_of_substitutions, perform_substitutions
 
 __all__ = [
@@ -22,43 +22,51 @@ __all__ = [
 ]
 
 
-class FindPackage(Substitution):
-    """The base of what finds a package."""
+class FindPackage(PathSubstitution):
+    """The base of what finds a package; `/` makes a path inside it."""
 
     def __init__(self, package: SomeSubstitutionsType) -> None:
+        super().__init__([])
         self.package = normalize_to_list_of_substitutions(package)
 
     def describe(self) -> str:
         """Return the package."""
         return f"{type(self).__name__}(pkg={described(self.package)})"
 
-    def find(self, package_name: str, context: LaunchContext) -> str:
-        """Return the folder of a package. Raises SubstitutionFailure."""
-        raise NotImplementedError
+    def find(self, package_name: str) -> str:
+        """Return the folder of a package that is installed, or whose sources can be found.
+
+        Raises PackageNotFoundError, a KeyError, or LaunchError.
+        """
+        return self.find_in(LaunchContext().packages, package_name)
+
+    def find_in(self, packages: Packages, name: str) -> str:
+        """Return the folder of a package that a launch finds."""
+        raise NotImplementedError(f"{type(self).__name__} does not define find_in()")
 
     def perform(self, context: LaunchContext) -> str:
-        """Return the folder. Raises SubstitutionFailure."""
-        return self.find(perform_substitutions(context, self.package), context)
+        """Return the folder. Raises PackageNotFoundError, a KeyError, or LaunchError."""
+        return self.find_in(context.packages, perform_substitutions(context, self.package))
+
+    def __truediv__(self, path: SomeSubstitutionsType) -> PathJoinSubstitution:
+        """Return a path inside it."""
+        return PathJoinSubstitution([self, path])
 
 
 class FindPackagePrefix(FindPackage):
     """The folder that a package is installed in."""
 
-    def find(self, package_name: str, context: LaunchContext) -> str:
-        """Return it. Raises SubstitutionFailure."""
-        return context.host.prefix(package_name)
+    def find_in(self, packages: Packages, name: str) -> str:
+        """Return it."""
+        return packages.prefix(name)
 
 
 class FindPackageShare(FindPackage):
     """The folder of shared files of a package."""
 
-    def find(self, package_name: str, context: LaunchContext) -> str:
-        """Return it. Raises SubstitutionFailure."""
-        return context.host.share(package_name)
-
-    def __truediv__(self, part: SomeSubstitutionsType) -> Substitution:
-        """Return a path inside it."""
-        return PathJoinSubstitution([self, part])
+    def find_in(self, packages: Packages, name: str) -> str:
+        """Return it."""
+        return packages.share(name)
 
 
 class ExecutableInPackage(Substitution):
@@ -75,7 +83,7 @@ class ExecutableInPackage(Substitution):
     def words(self, context: LaunchContext) -> list[str]:
         """Return the words that start it. Raises SubstitutionFailure."""
         package = perform_substitutions(context, self.package)
-        return list(context.host.executable(package, perform_substitutions(context, self.executable)))
+        return list(context.packages.executable(package, perform_substitutions(context, self.executable)))
 
     def perform(self, context: LaunchContext) -> str:
         """Return the words that start it, as one text. Raises SubstitutionFailure."""

@@ -1,25 +1,31 @@
-"""Events in the life of a process, and what can be done to it."""
+"""Events in the life of a process, what can be done to it, and matchers of processes."""
 
 from __future__ import annotations
 
 import signal
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from launch.event import Event
 
 if TYPE_CHECKING:
-    from launch.actions import ExecuteProcess
+    from launch.actions import ExecuteLocal
 
 __all__ = [
     "ProcessExited",
     "ProcessIO",
     "ProcessStarted",
     "ProcessStderr",
+    "ProcessStdin",
     "ProcessStdout",
+    "ProcessTargetedEvent",
     "RunningProcessEvent",
     "ShutdownProcess",
     "SignalProcess",
+    "matches_executable",
+    "matches_name",
+    "matches_pid",
 ]
 
 
@@ -31,7 +37,7 @@ class RunningProcessEvent(Event):
     def __init__(
         self,
         *,
-        action: ExecuteProcess,
+        action: ExecuteLocal,
         name: str,
         cmd: Sequence[str],
         cwd: str | None,
@@ -46,7 +52,7 @@ class RunningProcessEvent(Event):
         self.pid = pid
 
     @property
-    def execute_process_action(self) -> ExecuteProcess:
+    def execute_process_action(self) -> ExecuteLocal:
         """The action, under its older name."""
         return self.action
 
@@ -66,7 +72,7 @@ class ProcessExited(RunningProcessEvent):
         self,
         *,
         returncode: int,
-        action: ExecuteProcess,
+        action: ExecuteLocal,
         name: str,
         cmd: Sequence[str],
         cwd: str | None,
@@ -78,16 +84,16 @@ class ProcessExited(RunningProcessEvent):
 
 
 class ProcessIO(RunningProcessEvent):
-    """A process has written something; `fd` is 1 for stdout and 2 for stderr."""
+    """Something was written to stdin (`fd` 0), stdout (1) or stderr (2) of a process."""
 
     name = "launch.events.process.ProcessIO"
-    fd = 0
 
     def __init__(
         self,
         *,
         text: bytes,
-        action: ExecuteProcess,
+        fd: int,
+        action: ExecuteLocal,
         name: str,
         cmd: Sequence[str],
         cwd: str | None,
@@ -96,6 +102,12 @@ class ProcessIO(RunningProcessEvent):
     ) -> None:
         super().__init__(action=action, name=name, cmd=cmd, cwd=cwd, env=env, pid=pid)
         self.text = text
+        self.fd = fd
+
+    @property
+    def from_stdin(self) -> bool:
+        """Whether it went to stdin."""
+        return self.fd == 0
 
     @property
     def from_stdout(self) -> bool:
@@ -112,28 +124,45 @@ class ProcessStdout(ProcessIO):
     """A process has written to stdout."""
 
     name = "launch.events.process.ProcessStdout"
-    fd = 1
+
+    def __init__(self, *, text: bytes, **kwargs: Any) -> None:
+        super().__init__(text=text, fd=1, **kwargs)
 
 
 class ProcessStderr(ProcessIO):
     """A process has written to stderr."""
 
     name = "launch.events.process.ProcessStderr"
-    fd = 2
+
+    def __init__(self, *, text: bytes, **kwargs: Any) -> None:
+        super().__init__(text=text, fd=2, **kwargs)
 
 
-class _Targeted(Event):
-    def __init__(self, *, process_matcher: Callable[[ExecuteProcess], bool]) -> None:
+class ProcessStdin(ProcessIO):
+    """Somebody has written to stdin of a process."""
+
+    name = "launch.events.process.ProcessStdin"
+
+    def __init__(self, *, text: bytes, **kwargs: Any) -> None:
+        super().__init__(text=text, fd=0, **kwargs)
+
+
+class ProcessTargetedEvent(Event):
+    """Something is to be done to some processes."""
+
+    name = "launch.events.process.ProcessTargetedEvent"
+
+    def __init__(self, *, process_matcher: Callable[[ExecuteLocal], bool]) -> None:
         self.process_matcher = process_matcher
 
 
-class ShutdownProcess(_Targeted):
+class ShutdownProcess(ProcessTargetedEvent):
     """Some processes are to end."""
 
     name = "launch.events.process.ShutdownProcess"
 
 
-class SignalProcess(_Targeted):
+class SignalProcess(ProcessTargetedEvent):
     """Some processes get a signal: its number, or its name such as `SIGUSR1`."""
 
     name = "launch.events.process.SignalProcess"
@@ -142,7 +171,7 @@ class SignalProcess(_Targeted):
         self,
         *,
         signal_number: str | signal.Signals | int,
-        process_matcher: Callable[[ExecuteProcess], bool],
+        process_matcher: Callable[[ExecuteLocal], bool],
     ) -> None:
         super().__init__(process_matcher=process_matcher)
         self.signal = (
@@ -153,3 +182,20 @@ class SignalProcess(_Targeted):
     def signal_name(self) -> str:
         """The name of the signal."""
         return self.signal.name
+
+
+def matches_pid(pid: int) -> Callable[[ExecuteLocal], bool]:
+    """Return a matcher that accepts the process with this number."""
+    return lambda action: action.process_details is not None and action.process_details["pid"] == pid
+
+
+def matches_name(name: str) -> Callable[[ExecuteLocal], bool]:
+    """Return a matcher that accepts the process with this name."""
+    return lambda action: action.process_details is not None and action.process_details["name"] == name
+
+
+def matches_executable(executable: str) -> Callable[[ExecuteLocal], bool]:
+    """Return a matcher that accepts processes of this program."""
+    return lambda action: (
+        action.process_details is not None and Path(action.process_details["cmd"][0]).name == executable
+    )

@@ -1,1 +1,0 @@
-"""Runs launch descriptions: their processes, timers and events."""

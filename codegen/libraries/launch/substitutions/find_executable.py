@@ -1,0 +1,5 @@
+"""FindExecutable, by upstream's module name."""
+
+from launch.substitutions._places import FindExecutable
+
+__all__ = ["FindExecutable"]

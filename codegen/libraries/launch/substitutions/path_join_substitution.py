@@ -1,0 +1,5 @@
+"""PathJoinSubstitution, by upstream's module name."""
+
+from launch.substitutions._places import PathJoinSubstitution
+
+__all__ = ["PathJoinSubstitution"]

@@ -1,0 +1,149 @@
+"""The program `joint_state_publisher`: states for the joints of a robot that nobody else has values for."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, Final
+
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.utilities import remove_ros_args
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+
+from robot_state_publisher.urdf import MOVING, Joint, Robot, UrdfError, read_urdf
+
+_LATCHED: Final = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class JointStatePublisher(Node):
+    """Publishes /joint_states: positions from the topics in `source_list`, else the middle or 0.
+
+    Parameters: `rate` [Hz], `source_list`, `zeros.JOINT` [rad or m], `publish_default_positions`,
+    `publish_default_velocities`, `publish_default_efforts`, `use_mimic_tags`, and `delta`, the step
+    [rad or m] by which each joint moves to and fro.
+    """
+
+    def __init__(self, description: str = "", **kwargs: Any) -> None:
+        """Raise UrdfError if the description is no robot's."""
+        super().__init__(
+            "joint_state_publisher",
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+            **kwargs,
+        )
+        self._has_positions = bool(self._given("publish_default_positions", True))
+        self._has_velocities = bool(self._given("publish_default_velocities", False))
+        self._has_efforts = bool(self._given("publish_default_efforts", False))
+        self._delta = float(self._given("delta", 0.0))
+        rate = float(self._given("rate", 10.0))
+        if not rate > 0.0:
+            raise UrdfError(f"the parameter rate must be positive, got {rate}")
+        self._robot: Robot | None = None
+        self._positions: dict[str, float] = {}
+        self._velocities: dict[str, float] = {}
+        self._efforts: dict[str, float] = {}
+        self._directions: dict[str, int] = {}
+        self._publisher = self.create_publisher(JointState, "joint_states", 10)
+        if description:
+            self._take(description)
+        else:
+            self.create_subscription(String, "robot_description", self._on_description, _LATCHED)
+            self.get_logger().info("Waiting for a robot on the topic robot_description...")
+        for topic in self._given("source_list", []) or ():
+            self.create_subscription(JointState, topic, self._on_source, 10)
+        self.create_timer(1.0 / rate, self.publish)
+
+    def _given(self, name: str, default: Any) -> Any:
+        return self.get_parameter_or(name).value if self.has_parameter(name) else default
+
+    def _on_description(self, message: String) -> None:
+        try:
+            self._take(message.data)
+        except UrdfError as error:
+            self.get_logger().error(f"cannot use the robot description: {error}")
+
+    def _take(self, text: str) -> None:
+        self._robot = read_urdf(text)
+        self._positions = {
+            name: float(self._given(f"zeros.{name}", _middle(joint)))
+            for name, joint in self._robot.joints.items()
+            if joint.type in MOVING and not self._follows(joint)
+        }
+        self._directions = dict.fromkeys(self._positions, 1)
+
+    def _follows(self, joint: Joint) -> bool:
+        return joint.mimic is not None and bool(self._given("use_mimic_tags", True))
+
+    def _on_source(self, state: JointState) -> None:
+        for values, given in (
+            (self._positions, state.position),
+            (self._velocities, state.velocity),
+            (self._efforts, state.effort),
+        ):
+            if len(given) == len(state.name):
+                values.update({n: v for n, v in zip(state.name, given, strict=True) if n in self._directions})
+
+    def publish(self) -> None:
+        """Publish one state, if the robot is known."""
+        robot = self._robot
+        if robot is None:
+            return
+        if self._delta:
+            for name in self._positions:
+                self._move(robot.joints[name])
+        names = [n for n, joint in robot.joints.items() if joint.type in MOVING]
+        message = JointState(name=names)
+        message.header.stamp = self.get_clock().now().to_msg()
+        whole = robot.with_mimics(self._positions)
+        whole |= self._positions
+        for shown, field, values in (
+            (self._has_positions, "position", whole),
+            (self._has_velocities, "velocity", robot.with_mimics(self._velocities)),
+            (self._has_efforts, "effort", self._efforts),
+        ):
+            if shown or (field != "position" and values):
+                setattr(message, field, [values.get(name, 0.0) for name in names])
+        if names:
+            self._publisher.publish(message)
+
+    def _move(self, joint: Joint) -> None:
+        position = self._positions[joint.name] + self._delta * self._directions[joint.name]
+        if not joint.lower <= position <= joint.upper:
+            self._directions[joint.name] *= -1
+            position = min(max(position, joint.lower), joint.upper)
+        self._positions[joint.name] = position
+
+
+def _middle(joint: Joint) -> float:
+    """Return 0, or the middle of limits that do not contain it."""
+    is_inside = joint.lower <= 0.0 <= joint.upper or math.isnan(joint.lower + joint.upper)
+    return 0.0 if is_inside else (joint.lower + joint.upper) / 2
+
+
+def main(args: Sequence[str] | None = None) -> int:
+    """Run the program: `[URDF FILE]`, else the robot is that of the topic /robot_description."""
+    words = remove_ros_args(list(sys.argv if args is None else args))[1:]
+    try:
+        text = Path(words[0]).read_text(encoding="utf-8") if words else ""
+    except (OSError, UnicodeDecodeError) as error:
+        sys.exit(f"joint_state_publisher: cannot read '{words[0]}': {error}")
+    rclpy.init(args=sys.argv if args is None else list(args))
+    try:
+        rclpy.spin(JointStatePublisher(text))
+    except UrdfError as error:
+        sys.exit(f"joint_state_publisher: {error}")
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    finally:
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
