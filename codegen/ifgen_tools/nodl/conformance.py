@@ -15,7 +15,7 @@ from ifgen.nodl import names
 from ifgen.nodl.model import Category, Interface, Parameter, QosProfile, qos_mismatch
 from ifgen.nodl.values import spelled
 
-from ifgen_tools.graph import reading
+from ifgen_tools import ros_graph
 from ifgen_tools.nodl.parameters import RunningParameter
 
 Kind = Literal[
@@ -140,7 +140,7 @@ def side_of_document(
 
 
 def side_of_node(
-    node: str, endpoints: Iterable[reading.Endpoint], parameters: Sequence[RunningParameter] | None
+    node: str, endpoints: Iterable[ros_graph.Endpoint], parameters: Sequence[RunningParameter] | None
 ) -> Side:
     """The side of a running node; its parameters are None if its services do not answer."""
     ends = (
@@ -192,8 +192,8 @@ def _of_authors(ends: Iterable[End], node: str) -> tuple[End, ...]:
     """Those that the framework does not make, each once."""
     kept: dict[tuple[Category, str, str], End] = {}
     for end in ends:
-        seen = reading.Endpoint(node, end.name, end.category, end.type_name)
-        if not seen.is_of_framework and not reading.is_hidden(end.name):
+        seen = ros_graph.Endpoint(node, end.name, end.category, end.type_name)
+        if not seen.is_of_framework and not ros_graph.is_hidden(end.name):
             kept.setdefault((end.category, end.name, end.type_name), end)
     return tuple(kept.values())
 

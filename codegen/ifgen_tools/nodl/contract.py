@@ -108,26 +108,27 @@ def remaps_of_launch(path: Path, node: str, transport: Transport) -> list[tuple[
 
     from ifgen_tools.launching.commands import activate
 
-    activate(transport, settle().output)
-    from launch import LaunchContext
-    from launch.actions import ExecuteProcess, IncludeLaunchDescription
+    chosen = activate(transport, settle().output)
+    from launch import LaunchService
+    from launch.actions import ExecuteLocal, IncludeLaunchDescription
     from launch.launch_context import ProcessToStart
 
-    from ifgen_tools.launching.running.host import LaunchHost
+    from ifgen_tools.launching.packages import UserPackages
 
     commands: list[Sequence[str]] = []
 
-    class Recorder(LaunchHost):
+    class Recorder(LaunchService):
         """Notes commands, and starts none."""
 
-        def start(self, action: ExecuteProcess, process: ProcessToStart) -> None:
+        def start(self, actions: Sequence[ExecuteLocal], process: ProcessToStart) -> None:
             commands.append(process.command)
 
-    host = Recorder(LaunchContext(), settle().output, transport)
+    recorder = Recorder(noninteractive=True)
+    recorder.context.packages = UserPackages(settle().output, chosen)
     try:
-        host.visit([IncludeLaunchDescription(str(path))])
+        recorder.visit([IncludeLaunchDescription(str(path))])
     finally:
-        host.close()
+        recorder.context.files.close()
     names: list[str] = []
     for command in commands:
         remaps = list(_remaps(command))

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import pytest
 
-from ifgen_tools import discovery
-from ifgen_tools.graph import reading
+from ifgen_tools import discovery, ros_graph
 from ifgen_tools.nodl import contract
 from ifgen_tools.nodl.conformance import Choices, Report, compare, side_of_node
 from ifgen_tools.nodl.parameters import RunningParameter, running_parameter
@@ -70,7 +69,7 @@ def assert_conforms(
     try:
         while True:
             queues = {} if find_spec("rmw_local") is None else discovery.queues(node.context.get_domain_id())
-            seen = side_of_node(name, reading.read(peer, queues).endpoints, _parameters(node))
+            seen = side_of_node(name, ros_graph.read(peer, queues).endpoints, _parameters(node))
             report = compare(side, seen, choices)
             if not report.failures or time.monotonic() > end:
                 break
