@@ -112,7 +112,9 @@ def test_the_five_minutes_of_the_page(ifgen: Run) -> None:
 
 def test_the_programs_and_packages_of_the_page(ifgen: Run, tmp_path: Path) -> None:
     page = (ROOT / "docs/generators.md").read_text()
-    program = next(text for text in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "sys.stdin" in text)
+    program = next(
+        text for text in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "sys.stdin" in text
+    )
     write(tmp_path / "generate.py", program)
     done = ifgen("generators", "test", "--command", f"{sys.executable} generate.py")
     assert (done.code, done.err) == (0, "")
