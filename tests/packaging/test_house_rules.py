@@ -30,7 +30,8 @@ WRITERS: Final = {
     "ifgen_tools/bag/files.py": "the place of a copied bag",
     "ifgen_tools/beside.py": "a note by which the programs that it starts know of each other",
     "ifgen_tools/graph/commands.py": "the picture that was asked for",
-    "ifgen_tools/launching/running": "logs, and parameters for processes",
+    "ifgen_tools/conformance/commands.py": "the report that was asked for",
+    "libraries/launch": "logs, and parameters for processes",
     "ifgen_tools/nodl/commands.py": "the document that was asked for",
     "ifgen_tools/running/processes.py": "a note by which the programs that it starts know of each other",
     "ifgen_tools/top/screen/frame.py": "no file: `truncate` of a line",
@@ -39,6 +40,8 @@ WRITERS: Final = {
     "underlay/rmw_local/transports/doorbell.py": "sockets, in a folder for the user's",
     "underlay/rmw_local/transports/memory.py": "shared memory",
     "underlay/rmw_local/writer.py": "no file: `touch` of a deadline",
+    "ifgen/cli/generators.py": "folders that `transaction` fills",
+    "ifgen/pipeline/generators/kit.py": "the folder that `transaction` fills",
 }
 """Who writes, and what; by file or room below codegen."""
 
