@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable, Iterator
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, nullcontext
 from importlib.util import find_spec
 from os import PathLike
@@ -152,3 +155,30 @@ def replay(request: pytest.FixtureRequest) -> Callable[..., Replayed]:
         return replay_through(request.path.parent / path, *nodes, **options)
 
     return replay_beside
+
+
+@pytest.fixture
+def ifgen_generator(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """`ifgen_generator("acme-docs", golden=FOLDER)` tests a generator, as `ifgen generators test` does.
+
+    With `command=` it is a program. `options` is a table of its options. `--update-golden` accepts all files.
+    """
+
+    def check(
+        name: str = "",
+        *,
+        command: str = "",
+        golden: PathLike[str] | None = None,
+        options: Mapping[str, object] | None = None,
+    ) -> None:
+        arguments = [sys.executable, "-m", "ifgen", "generators", "test", *([name] if name else [])]
+        arguments += ["--command", command] if command else []
+        arguments += ["--golden", os.fspath(golden)] if golden is not None else []
+        arguments += ["--options", json.dumps(options or {})]
+        if request.config.getoption("--update-golden") and golden is not None:
+            arguments.append("--update")
+        done = subprocess.run(arguments, capture_output=True, text=True, check=False)
+        if done.returncode:
+            pytest.fail(done.stderr or done.stdout, pytrace=False)
+
+    return check

@@ -15,6 +15,7 @@ from ifgen_pytest.fixtures import (
     FOLDER,
     RECORDING,
     bag,
+    ifgen_generator,
     record,
     replay,
     ros_collect,
@@ -28,6 +29,7 @@ from ifgen_pytest.strict import StrictCheck
 
 __all__ = [
     "bag",
+    "ifgen_generator",
     "record",
     "replay",
     "ros_collect",
@@ -48,6 +50,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addini("ros_strict", "apply the marker ros_strict to every test", "bool", default=False)
     parser.addini(FOLDER, "the folder for the bags of tests that fail", default="")
     group = parser.getgroup("ifgen")
+    group.addoption("--update-golden", action="store_true", help="accept what generators make now")
     group.addoption("--ros-strict", action="store_true", help="apply the marker ros_strict to every test")
     group.addoption(
         "--ros-bags",

@@ -1,12 +1,21 @@
-"""The commands about generators: `ifgen generators list` and `describe`."""
+"""The commands about generators: `ifgen generators list`, `describe`, `test` and `new`."""
 
 from __future__ import annotations
 
 import json
+import re
+import shlex
+import sys
+from pathlib import Path
 
 import click
 
-from ifgen.diagnostics import InputError
+from ifgen import resources
+from ifgen.command_kit import terminal
+from ifgen.command_kit.options import OUTPUT_FOLDER
+from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
+from ifgen.signals import sigterm_raises
+from ifgen.writing import transaction
 
 # Late imports: each command loads what it needs, so that the others start fast.
 
@@ -58,4 +67,85 @@ def describe(name: str, as_json: bool) -> int:
     supported = FEATURES if found.features is None else found.features
     if missing := [words for feature, words in FEATURES.items() if feature not in supported]:
         print(f"\nnot supported: {', '.join(missing)}")
+    return 0
+
+
+@generators.command(epilog="Example: ifgen generators test acme-docs --golden tests/golden")
+@click.argument("name", metavar="[NAME]", required=False)
+@click.option("--command", metavar="COMMAND", help="A program that is a generator, instead of NAME.")
+@click.option("--golden", metavar="DIR", type=OUTPUT_FOLDER, help="Compare with the files in this folder.")
+@click.option("--update", is_flag=True, help="Write what it makes into that folder, and accept it.")
+@click.option("--options", metavar="JSON", default="{}", help='Its options, such as \'{"title": "Acme"}\'.')
+@click.option("--corpus", metavar="DIR", type=OUTPUT_FOLDER, help="Only write the corpus into this folder.")
+def test(
+    name: str | None,
+    command: str | None,
+    golden: Path | None,
+    update: bool,
+    options: str,
+    corpus: Path | None,
+) -> int:
+    """Test a generator on interfaces with every trap.
+
+    Two runs must make the same files, members of the model that it does not know must not matter to a
+    program, paths must be inside its folder, and what can be parsed must be right.
+    """
+    from ifgen.config.customization import Target
+    from ifgen.pipeline.generators import kit
+
+    if corpus is not None:
+        corpus.mkdir(parents=True, exist_ok=True)
+        kit.write_corpus(corpus)
+        print(f"{shown_path(corpus)}: {terminal.counted(len(kit.corpus()), 'interface')} written")
+        return 0
+    context = click.get_current_context()
+    if bool(name) == bool(command):
+        raise click.UsageError("name either a generator or a --command", context)
+    if update and golden is None:
+        raise click.UsageError("--update needs --golden", context)
+    try:
+        values = json.loads(options)
+    except ValueError as error:
+        raise click.UsageError(f"--options is no JSON: {error}", context) from None
+    words = tuple(shlex.split(command)) if command else ()
+    target = Target(name or "program", Path(), name, words, options=values, base=Path.cwd())
+    report = kit.test(target, golden, update=update)
+    terminal.print_diagnostics(report.diagnostics, stderr=True)
+    for problem in report.problems:
+        print(f"error: {problem}", file=sys.stderr)
+    if update:
+        print(f"{terminal.counted(report.updated, 'golden file')} changed")
+    if not report.problems:
+        print(f"{name or command}: {terminal.counted(len(report.files), 'file')}, no mistakes")
+    return int(bool(report.problems))
+
+
+@generators.command(epilog="Example: ifgen generators new acme-docs")
+@click.argument("name")
+@click.option("--in", "folder", metavar="DIR", type=OUTPUT_FOLDER, help="Make its folder here (default: .).")
+def new(name: str, folder: Path | None) -> int:
+    """Start a pip package with a generator, its test and CI."""
+    if not re.fullmatch(r"[a-z][a-z0-9]*(-[a-z0-9]+)*", name):
+        advice = "write small letters, digits and single hyphens, such as acme-docs"
+        raise UsageError([Diagnostic("no-path", f"a generator cannot be called '{name}'", help=advice)])
+    root = (folder or Path()) / name
+    if root.exists():
+        message = f"{shown_path(root)} is there already"
+        raise UsageError([Diagnostic("foreign-file", message, help="choose another name, or another --in")])
+    module = name.replace("-", "_")
+    places = {
+        "generator.toml": "pyproject.toml",
+        "generator.py.txt": f"{module}/__init__.py",
+        "generator_page.md.j2": f"{module}/templates/page.md.j2",
+        "generator_filters.py.txt": f"{module}/filters.py",
+        "generator_test.py.txt": "tests/test_golden.py",
+        "generator_workflow.yml": ".github/workflows/test.yml",
+    }
+    root.mkdir(parents=True)
+    texts = {root / path: resources.skeleton(file, name=name, module=module) for file, path in places.items()}
+    with sigterm_raises():
+        transaction.apply([(path, text.encode()) for path, text in texts.items()], root)
+    for path in texts:
+        print(f"created {shown_path(path)}")
+    print(f"next: `pip install -e {shown_path(root)}`, then `ifgen generators test {name}`")
     return 0

@@ -46,7 +46,17 @@ def load_model(
     exclude: Sequence[str] = (),
 ) -> Model:
     """The model of the interfaces and nodes at `paths`. Raises InputError with all mistakes."""
+    return load_built_model(*paths, include=include, with_deps=with_deps, exclude=exclude).model
+
+
+def load_built_model(
+    *paths: Path | str,
+    include: Sequence[Path | str] = (),
+    with_deps: WithDeps = False,
+    exclude: Sequence[str] = (),
+) -> BuiltModel:
+    """The same, with the places of its elements."""
     packages, _ = without_excluded(find_packages(paths), exclude)
     search = SearchPath(packages, include)
     request = Request(tuple(map(Path, paths)), packages, search, Path(), {}, with_deps)
-    return build_model(resolve_what_can_be(request)).model
+    return build_model(resolve_what_can_be(request))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import struct
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -376,17 +377,21 @@ def _value(value: Scalar, type_: ValueType) -> model.Value:
 
 
 def _float(value: float, form: str, word: str, digits: int) -> model.Value:
-    data = struct.pack(form, value)
+    data = _packed(form, value)
     [bits] = struct.unpack(word, data)
     exact = repr(value)
-    if form == "<f":
-        exact = next(
-            text
-            for places in range(1, 18)
-            if struct.pack(form, float(text := f"{value:.{places}g}")) == data or places == 17
-        )
-        exact = repr(float(exact))
-    return model.Value(value, exact, f"0x{bits:0{digits}x}")
+    if form == "<f":  # as few digits as will do for 32 bits
+        texts = (f"{value:.{places}g}" for places in range(1, 10))
+        exact = repr(float(next((text for text in texts if _packed(form, float(text)) == data), exact)))
+        exact = exact if math.isfinite(struct.unpack(form, data)[0]) else repr(struct.unpack(form, data)[0])
+    return model.Value(float(exact), exact, f"0x{bits:0{digits}x}")
+
+
+def _packed(form: str, value: float) -> bytes:
+    try:
+        return struct.pack(form, value)
+    except OverflowError:  # it is infinite in 32 bits
+        return struct.pack(form, math.copysign(math.inf, value))
 
 
 def _python_default(field: Field) -> str | None:

@@ -6,7 +6,7 @@ import json
 import os
 import signal
 import subprocess
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from difflib import get_close_matches
@@ -40,9 +40,12 @@ def installed() -> Mapping[str, EntryPoint]:
     return {found.name: found for found in entry_points(group=GROUP)}
 
 
-def find(target: Target) -> Generator:
-    """The generator of a target. Raises InputError if it cannot be had, or needs another model."""
-    found = _program(target) if target.command else named(target.use or "", target.span)
+def find(target: Target, ask: Callable[[Request], str] = generate_request) -> Generator:
+    """The generator of a target. Raises InputError if it cannot be had, or needs another model.
+
+    `ask` writes the request to a program.
+    """
+    found = _program(target, ask) if target.command else named(target.use or "", target.span)
     ours, theirs = VERSION.split("."), found.model.split(".")
     if theirs[0] != ours[0] or not theirs[-1].isdigit() or int(theirs[-1]) > int(ours[-1]):
         message = f"generator '{found.name}' needs model {found.model}, and ifgen has model {VERSION}"
@@ -89,18 +92,18 @@ def sources(target: Target) -> tuple[Path, ...]:
         return ()
 
 
-def _program(target: Target) -> Generator:
+def _program(target: Target, ask: Callable[[Request], str]) -> Generator:
     answer, _ = _ask(target, describe_request(), "describe")
     try:
         found = protocol.described(answer, target.name)
     except ValueError as error:
         message = _failed(target, f"cannot describe itself: {error}")
         raise InputError([failure(target.span, message)]) from None
-    return replace(found, generate=lambda request: _generate(target, request))
+    return replace(found, generate=lambda request: _generate(target, ask(request)))
 
 
-def _generate(target: Target, request: Request) -> Response:
-    answer, said = _ask(target, generate_request(request), "generate")
+def _generate(target: Target, request: str) -> Response:
+    answer, said = _ask(target, request, "generate")
     try:
         response = protocol.response(answer)
     except ValueError as error:

@@ -15,6 +15,7 @@ from ifgen.generator_py.outputs.plan import plan_outputs
 from ifgen.generator_py.templates.parsed import wrong_text
 from ifgen.generator_py.templates.render import Templates
 from ifgen.generators import File, Finding, Generator, Request, Response
+from ifgen.generators.protocol import generate_request
 from ifgen.model import Model
 from ifgen.pipeline.generators import narrowing
 from ifgen.pipeline.generators.find import failure, find, option_values
@@ -33,15 +34,17 @@ class TargetResult:
     diagnostics: tuple[Diagnostic, ...]
 
 
-def run_targets(targets: Sequence[Target], built: BuiltModel) -> TargetResult:
-    """Run all targets. Raises InputError with the mistakes of all of them."""
+def run_targets(
+    targets: Sequence[Target], built: BuiltModel, ask: Callable[[Request], str] = generate_request
+) -> TargetResult:
+    """Run all targets; `ask` writes the request to a program. Raises InputError with all mistakes."""
     problems: list[Diagnostic] = []
     found: list[Diagnostic] = []
     made: dict[Path, dict[str, str | bytes]] = {}
     owners: dict[str, str] = {}
     for target in targets:
         try:
-            files, diagnostics = _Run(target, built).files()
+            files, diagnostics = _Run(target, built, ask).files()
         except InputError as error:
             problems += error.diagnostics
             continue
@@ -61,10 +64,10 @@ def run_targets(targets: Sequence[Target], built: BuiltModel) -> TargetResult:
 class _Run:
     """One target."""
 
-    def __init__(self, target: Target, built: BuiltModel) -> None:
+    def __init__(self, target: Target, built: BuiltModel, ask: Callable[[Request], str]) -> None:
         self._target = target
         self._spans = built.spans
-        self._generator = find(target)
+        self._generator = find(target, ask)
         self._options = option_values(target, self._generator)
         self._skipped: list[Diagnostic] = []
         self._request = Request(self._narrowed(built.model), self._options, target.name)

@@ -1,0 +1,161 @@
+"""The kit for authors of generators: a corpus of interfaces with every trap, and what must hold for each.
+
+The same input gives the same files, members of the model that nobody knows change nothing, and files are as
+a folder of golden ones has them.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from difflib import unified_diff
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Final
+
+from ifgen import generators as public
+from ifgen.config.customization import Target
+from ifgen.diagnostics import Diagnostic, InputError
+from ifgen.generators import protocol
+from ifgen.pipeline.generators import find
+from ifgen.pipeline.generators.run import run_targets
+from ifgen.pipeline.model import BuiltModel, load_built_model
+from ifgen.reading.storage import MAX_GENERATED, read_limited
+from ifgen.writing import transaction
+
+CORPUS: Final = Path(public.__file__).with_name("corpus.txt")
+_HEAD: Final = re.compile(r"^==> (\S+) <==\n", re.MULTILINE)
+_REPEATED: Final = re.compile(r"\* (\d+)\n(.*)", re.DOTALL)
+_MOST_LINES: Final = 30
+
+Files = Mapping[str, str | bytes]
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The outcome of the kit: what it found wrong, in words, what the generator said, and its files."""
+
+    problems: tuple[str, ...]
+    diagnostics: tuple[Diagnostic, ...]
+    files: Files
+    updated: int = 0
+
+
+def corpus() -> dict[str, str]:
+    """The files of the corpus, by path. A text that begins with `* N` is there N times, with numbers."""
+    parts = _HEAD.split(CORPUS.read_text(encoding="utf-8"))[1:]
+    return {path: _text(text) for path, text in zip(parts[::2], parts[1::2], strict=True)}
+
+
+def _text(text: str) -> str:
+    if match := _REPEATED.fullmatch(text):
+        return "".join(match[2].replace("{}", str(number)) for number in range(int(match[1])))
+    return text
+
+
+def write_corpus(folder: Path) -> None:
+    """Write the corpus into a folder, for tools that compile what a generator makes of it."""
+    transaction.apply([(folder / path, text.encode()) for path, text in corpus().items()], folder)
+
+
+def test(target: Target, golden: Path | None = None, *, update: bool = False) -> Report:
+    """Run a generator on the corpus. Raises InputError if it cannot be used at all."""
+    with TemporaryDirectory(prefix="ifgen-corpus-") as name:
+        folder = Path(name)
+        write_corpus(folder)
+        built = load_built_model(folder, with_deps=False)
+        target = replace(target, unsupported="skip", out=folder / "out")
+        find.find(target)  # whose errors are about all of it
+        try:
+            files, diagnostics = _files(target, built)
+        except InputError as error:
+            return Report(("it refuses the corpus",), error.diagnostics, {})
+        problems = [*_unequal(files, _files(target, built)[0], "a second run makes other files")]
+        if target.command:
+            problems += _with_unknown_members(target, built, files)
+        if not files:
+            problems.append("it makes no files")
+        problems += _plain_texts(files)
+    updated = 0
+    if golden is not None:
+        if update:
+            updated = _update(golden, files)
+        else:
+            problems += _unequal(_read(golden), files, f"not as in {golden}; --update accepts it")
+    return Report(tuple(problems), diagnostics, files, updated)
+
+
+def _files(target: Target, built: BuiltModel) -> tuple[Files, tuple[Diagnostic, ...]]:
+    result = run_targets([target], built)
+    return {name: of for folder in result.folders for name, of in folder.files.items()}, result.diagnostics
+
+
+def _with_unknown_members(target: Target, built: BuiltModel, files: Files) -> Iterator[str]:
+    """What a program does with a later version of the model."""
+
+    def later(request: public.Request) -> str:
+        return json.dumps(_with_more(json.loads(protocol.generate_request(request))))
+
+    again = run_targets([target], built, later)
+    found = {name: of for folder in again.folders for name, of in folder.files.items()}
+    yield from _unequal(files, found, "unknown members of the model change its files")
+
+
+def _with_more(value: Any) -> Any:
+    match value:
+        case dict():
+            members = {key: _with_more(of) for key, of in value.items()}
+            # Descriptions are ROS's own, and the members of some objects are names.
+            return members if "type_description" in value else {"x_later": ["?"], **members}
+        case list():
+            return [_with_more(element) for element in value]
+        case _:
+            return value
+
+
+def _plain_texts(files: Files) -> Iterator[str]:
+    for name, content in files.items():
+        if isinstance(content, str) and "\r" in content:
+            yield f"{name} has line ends of Windows"
+
+
+def _unequal(expected: Files, found: Files, why: str) -> Iterator[str]:
+    for name in sorted(expected.keys() | found.keys()):
+        before, after = _shown(expected.get(name)), _shown(found.get(name))
+        if before == after:
+            continue
+        if before is None or after is None:
+            yield f"{name} is {'new' if before is None else 'gone'}: {why}"
+        else:
+            lines = list(unified_diff(before.splitlines(), after.splitlines(), name, name, lineterm=""))
+            more = [f"... {len(lines) - _MOST_LINES} more lines"] if len(lines) > _MOST_LINES else []
+            yield "\n".join([f"{name}: {why}", *lines[:_MOST_LINES], *more])
+
+
+def _shown(content: str | bytes | None) -> str | None:
+    return content if isinstance(content, str) or content is None else repr(content)
+
+
+def _read(golden: Path) -> dict[str, str | bytes]:
+    found: dict[str, str | bytes] = {}
+    for path in sorted(golden.rglob("*")):
+        if path.is_file():
+            data = read_limited(path, MAX_GENERATED)
+            try:
+                found[path.relative_to(golden).as_posix()] = data.decode()
+            except UnicodeDecodeError:
+                found[path.relative_to(golden).as_posix()] = data
+    return found
+
+
+def _update(golden: Path, files: Files) -> int:
+    golden.mkdir(parents=True, exist_ok=True)
+    before = _read(golden)
+    changes: list[transaction.Change] = [(golden / name, None) for name in before.keys() - files.keys()]
+    for name, content in files.items():
+        if before.get(name) != content:
+            changes.append((golden / name, content.encode() if isinstance(content, str) else content))
+    transaction.apply(changes, golden)
+    return len(changes)

@@ -1,0 +1,99 @@
+"""The kit for authors: `ifgen generators new`, `test`, `list` and `describe`, and the pytest fixture."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+from ifgen.pipeline.generators import kit
+
+from ..conftest import Run, write
+
+SHIPPED = sorted(
+    found.name for found in entry_points(group="ifgen.generators") if found.value.startswith("ifgen_")
+)
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_what_we_ship_passes_our_own_kit(ifgen: Run, name: str) -> None:
+    done = ifgen("generators", "test", name)
+    assert (done.code, done.err) == (0, "")
+    assert done.out.endswith("no mistakes\n")
+
+
+def test_the_corpus_has_every_kind_of_trap(ifgen: Run, tmp_path: Path) -> None:
+    assert (
+        ifgen("generators", "test", "--corpus", tmp_path / "corpus").out == "corpus: 62 interfaces written\n"
+    )
+    files = kit.corpus()
+    assert {path.rpartition(".")[2] for path in files} == {"msg", "srv", "action", "idl"}
+    assert len(files["trap_msgs/msg/Large.msg"].splitlines()) == 140
+
+
+def test_golden_files(ifgen: Run, tmp_path: Path) -> None:
+    golden = ("generators", "test", "json-schema", "--golden", tmp_path / "golden")
+    assert ifgen(*golden, "--update").code == 0
+    assert ifgen(*golden).code == 0
+    (tmp_path / "golden/trap_msgs/msg/Plain.json").write_text("{}\n")
+    (tmp_path / "golden/trap_msgs/msg/Inner.json").unlink()
+    done = ifgen(*golden)
+    assert done.code == 1
+    assert "error: trap_msgs/msg/Inner.json is new" in done.err
+    assert "error: trap_msgs/msg/Plain.json: not as in" in done.err and "-{}\n" in done.err
+    assert ifgen(*golden, "--update").out.startswith("2 golden files changed\n")
+
+
+TRAPS = {
+    "a second run makes other files": "import os; answer['files'][0]['text'] = str(os.getpid())",
+    "unknown members of the model change its files": "answer['files'][0]['text'] = str(len(request['model']))",
+    "it makes no files": "answer['files'] = []",
+}
+
+
+@pytest.mark.parametrize("problem", TRAPS)
+def test_what_the_kit_finds(ifgen: Run, tmp_path: Path, problem: str) -> None:
+    write(
+        tmp_path / "generate.py",
+        "import json, sys\nrequest = json.load(sys.stdin)\nif request['request'] == 'describe':\n    answer = {}\n"
+        f"else:\n    answer = {{'files': [{{'path': 'a', 'text': ''}}]}}\n    {TRAPS[problem]}\nprint(json.dumps(answer))\n",
+    )
+    done = ifgen("generators", "test", "--command", f"{sys.executable} generate.py")
+    assert done.code == 1 and f"error: {problem}" in done.err.replace("a: ", "")
+
+
+def test_list_and_describe(ifgen: Run) -> None:
+    assert re.search(r"^json-schema +JSON Schema", ifgen("generators", "list").out, re.MULTILINE)
+    assert 'int64 = "number"  ("number" | "string")' in ifgen("generators", "describe", "json-schema").out
+    assert json.loads(ifgen("generators", "describe", "json-schema", "--json").out)["model"] == "1.0"
+    assert "did you mean 'json-schema'?" in ifgen("generators", "describe", "json-shema").err
+
+
+def test_a_new_generator_passes_its_own_tests(ifgen: Run, tmp_path: Path) -> None:
+    """As its author would: new, install, test. The installation is a folder on the path, which takes no time."""
+    assert ifgen("generators", "new", "acme-docs").code == 0
+    assert ifgen("generators", "new", "acme-docs").code == 2
+    assert ifgen("generators", "new", "Acme").code == 2
+    info = tmp_path / "acme-docs/acme_docs-0.1.0.dist-info"
+    write(info / "METADATA", "Metadata-Version: 2.1\nName: acme-docs\nVersion: 0.1.0\n")
+    write(info / "entry_points.txt", "[ifgen.generators]\nacme-docs = acme_docs:GENERATOR\n")
+    run = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "tests"]
+    for options, code in ((["--update-golden"], 0), ([], 0)):
+        done = subprocess.run(
+            [*run, *options],
+            cwd=tmp_path / "acme-docs",
+            env={**os.environ, "PYTHONPATH": str(tmp_path / "acme-docs")},
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+        assert done.returncode == code, done.stdout + done.stderr
+    golden = tmp_path / "acme-docs/tests/golden/trap_msgs/units.md"
+    assert "| `speed` | `float64` |" in golden.read_text()
