@@ -51,6 +51,7 @@ SMALL = {
     "ifgen.command_kit.failures": "only a run that fails loads it",
     "ifgen.pipeline.typings": "`ifgen typings` as `stages` is `ifgen generate`",
     "ifgen.reading.python_text": "places in Python, beside those in the other kinds of files that are read",
+    "ifgen_generators.rust.testee": "code for tests, which users do not get",
     "ifgen_runtime.importing": "messages load it, and must stay light",
     "ifgen_runtime.slot_types": "loaded by who asks for SLOT_TYPES",
     "ifgen_runtime.undecided": "the names that adapters of users import",

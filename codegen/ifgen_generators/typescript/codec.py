@@ -225,7 +225,7 @@ class ReadFunction:
     def _literal(
         self, fields: Sequence[Field], path: tuple[str, ...], values: Mapping[tuple[str, ...], str]
     ) -> str:
-        parts = []
+        parts: list[str] = []
         for each in fields:
             inner = (*path, each.name)
             value = values.get(inner)

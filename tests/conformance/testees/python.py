@@ -165,7 +165,12 @@ class Classes(Library):
         from ifgen_runtime.field_types import message_class
 
         package, folder, name = type_name.split("/")
+        action, _, part = name.rpartition("_")
+        part = {"SendGoal": "SendGoalService", "GetResult": "GetResultService"}.get(part, part)
         try:
+            if part in ("FeedbackMessage", "SendGoalService", "GetResultService"):
+                inner: type[Any] = getattr(message_class(f"{package}.{folder}", action).Impl, part)
+                return inner
             return message_class(f"{package}.{folder}", name)
         except (ImportError, AttributeError):
             raise Skip("unknown-type") from None
