@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -30,6 +31,12 @@ def needs(tool: str) -> str:
 def load(*paths: Path) -> Model:
     """The model of these interfaces and of all that they need."""
     return load_model(*paths, include=(ROOT / "interfaces",), with_deps=True)
+
+
+def corpus(folder: Path) -> Model:
+    """The model of the interfaces with every trap, which authors of generators get."""
+    run([sys.executable, "-m", "ifgen", "generators", "test", "--corpus", str(folder)])
+    return load(folder / "trap_msgs", folder / "other_msgs")
 
 
 def generate(generator: Generator, model: Model, **options: Any) -> Response:

@@ -8,7 +8,7 @@ import pytest
 from ifgen.model import Model
 from ifgen_generators.cpp import GENERATOR
 
-from .support import ROOT, WARNINGS, build, conformance, generate, load, needs, run, write
+from .support import ROOT, WARNINGS, build, conformance, corpus, generate, load, needs, run, write
 
 STRICT = [*WARNINGS, "-fsyntax-only"]
 MISUSE = """\
@@ -76,6 +76,7 @@ def everything() -> Model:
 @pytest.mark.parametrize("standard", ["c++17", "c++20"])
 def test_all_headers_compile(everything: Model, tmp_path: Path, compiler: str, standard: str) -> None:
     needs(compiler)
+    write(generate(GENERATOR, corpus(tmp_path / "corpus")), tmp_path)
     write(generate(GENERATOR, everything), tmp_path)
     headers = sorted(path.relative_to(tmp_path) for path in tmp_path.rglob("*.hpp"))
     source = tmp_path / "all.cpp"
