@@ -30,7 +30,7 @@ def needs(tool: str) -> str:
 
 def load(*paths: Path) -> Model:
     """The model of these interfaces and of all that they need."""
-    return load_model(*paths, include=(ROOT / "interfaces",), with_deps=True)
+    return load_model(*paths, include=(ROOT / "interfaces", ROOT / "tests/conformance/interfaces"), with_deps=True)
 
 
 def corpus(folder: Path) -> Model:

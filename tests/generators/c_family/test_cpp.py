@@ -97,9 +97,10 @@ def test_the_headers_of_rosidl_beside_ours_are_an_error(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(900)  # a minute of compiling on an idle machine
 def test_the_suite_passes(everything: Model, tmp_path: Path) -> None:
     write(generate(GENERATOR, everything, testee=True), tmp_path)
-    testee = build(tmp_path, [needs("g++"), "-std=c++17", "-O0", *WARNINGS], ".cpp", tmp_path / "program")
+    testee = build(tmp_path, [needs("g++"), "-std=c++17", "-O0"], ".cpp", tmp_path / "program")
     assert "alignment" in conformance(str(testee))
 
 
