@@ -14,10 +14,12 @@ ROOT: Final = Path(__file__).resolve().parents[2]
 TOOLKIT: Final = ROOT / "codegen/ifgen"
 
 WRITERS: Final = {
+    "cli/generators.py": "folders that `transaction` fills",
     "cli/new.py": "files that do not exist yet",
     "command_kit/completion.py": "the null device, in place of stderr",
     "command_kit/terminal.py": "the null device, in place of an output that is closed",
     "generator_py/templates/exports.py": "the folder that `transaction` fills",
+    "pipeline/generators/kit.py": "the folder that `transaction` fills",
 }
 """Who writes besides the room `writing`, and what; by file below codegen/ifgen."""
 

@@ -75,6 +75,7 @@ def test_list_and_describe(ifgen: Run) -> None:
     assert "did you mean 'json-schema'?" in ifgen("generators", "describe", "json-shema").err
 
 
+@pytest.mark.slow
 def test_a_new_generator_passes_its_own_tests(ifgen: Run, tmp_path: Path) -> None:
     """As its author would: new, install, test. The installation is a folder on the path, which takes no time."""
     assert ifgen("generators", "new", "acme-docs").code == 0
@@ -95,5 +96,25 @@ def test_a_new_generator_passes_its_own_tests(ifgen: Run, tmp_path: Path) -> Non
             check=False,
         )
         assert done.returncode == code, done.stdout + done.stderr
-    golden = tmp_path / "acme-docs/tests/golden/trap_msgs/units.md"
+    golden = tmp_path / "acme-docs/tests/golden/trap_msgs/msg/units.md"
     assert "| `speed` | `float64` |" in golden.read_text()
+
+
+def test_the_five_minutes_of_the_page(ifgen: Run) -> None:
+    page = (ROOT / "docs/generators.md").read_text()
+    [block] = re.findall(r"```console\n(.*?)```", page, re.DOTALL)
+    *commands, last = [line.removeprefix("$ ") for line in block.splitlines() if line.startswith("$ ")]
+    assert last == "ifgen generate"
+    subprocess.run(["sh", "-ec", "\n".join(commands)], check=True, timeout=60)
+    assert ifgen("generate").out == block.rpartition("$ ifgen generate\n")[2]
+    assert "| `level` | `float64` | `1.0` |  | how full it is |" in Path("docs/demo_msgs.md").read_text()
+
+
+def test_the_programs_and_packages_of_the_page(ifgen: Run, tmp_path: Path) -> None:
+    page = (ROOT / "docs/generators.md").read_text()
+    program = next(
+        text for text in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "sys.stdin" in text
+    )
+    write(tmp_path / "generate.py", program)
+    done = ifgen("generators", "test", "--command", f"{sys.executable} generate.py")
+    assert (done.code, done.err) == (0, "")

@@ -22,7 +22,8 @@ def example(request: pytest.FixtureRequest, tmp_path: Path, ifgen: Run) -> str:
     name: str = request.param
     source = ROOT / "examples/templates" / name
     shutil.copytree(source, tmp_path, dirs_exist_ok=True, ignore=shutil.ignore_patterns("generated"))
-    assert ifgen("templates", "check").out == "templates: no mistakes\n"
+    if name != "pydantic":  # which has no templates of its own
+        assert ifgen("templates", "check").out == "templates: no mistakes\n"
     done = ifgen("generate", "--no-tests")
     assert (done.code, done.err) == (0, "")
     assert ifgen("generate", "--no-tests", "--check").code == 0
@@ -71,8 +72,8 @@ def limits(name, found):
     bounds.setdefault(name, []).append({w: found[w] for w in words if w in found})
     if "items" in found:
         limits(name + "[]", found["items"])
-ours = json.load(open("generated/message_models/survey_msgs/msg/landmark.schema.json"))
-for schema in (ours["$defs"]["Landmark"], Landmark.model_json_schema()):
+ours = json.load(open("generated/schemas/survey_msgs/msg/Landmark.json"))
+for schema in (ours["$defs"]["survey_msgs.msg.Landmark"], Landmark.model_json_schema()):
     for name, found in schema["properties"].items():
         limits(name, found)
 assert all(len(both) == 2 and both[0] == both[1] for both in bounds.values()), bounds

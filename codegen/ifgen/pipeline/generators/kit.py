@@ -93,7 +93,7 @@ def _files(target: Target, built: BuiltModel) -> tuple[Files, tuple[Diagnostic, 
 
 
 def _with_unknown_members(target: Target, built: BuiltModel, files: Files) -> Iterator[str]:
-    """What a program does with a later version of the model."""
+    """The differences that a later version of the model makes to a program."""
 
     def later(request: public.Request) -> str:
         return json.dumps(_with_more(json.loads(protocol.generate_request(request))))

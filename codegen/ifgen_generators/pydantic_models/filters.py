@@ -1,14 +1,13 @@
-"""Filters for the templates in this folder: the types of fields as pydantic and JSON schema express them."""
+"""Filters for the templates of this set: the types of fields as pydantic expresses them."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ifgen.model import Field, FieldType, Interface, TypeReference
 
-_PYTHON = {"bool": "bool", "int": "int", "float": "float", "byte": "int", "string": "str"}
-_JSON = {"bool": "boolean", "int": "integer", "float": "number", "byte": "integer", "string": "string"}
+_PYTHON = {"bool": "bool", "int": "int", "float": "float", "byte": "int", "char": "str", "string": "str"}
 
 
 def model(message: TypeReference) -> str:
@@ -16,16 +15,17 @@ def model(message: TypeReference) -> str:
     return f"{message.package}_{message.folder}_{message.name}"
 
 
-def imports(interface: Interface) -> list[str]:
-    """The import statements of a module, in the order that isort wants."""
+def imports(interface: Interface, package: str, converts: bool) -> list[str]:
+    """The import statements of a module of `package`, in the order that isort wants."""
     types = [field.type for message in interface.messages for field in message.fields]
     names = ["Annotated"] if any("Annotated" in annotation(type_) for type_ in types) else []
     if any(message.constants for message in interface.messages):
         names.append("ClassVar")
     others = [f"from pydantic import BaseModel, ConfigDict{', Field' if types else ''}"]
-    others += [f"from {interface.module} import {interface.name} as _{interface.name}"]
+    if converts:
+        others.append(f"from {interface.module} import {interface.name} as _{interface.name}")
     for used in interface.uses:
-        module = f"message_models.{used.package}.{used.folder}.{used.snake_interface}"
+        module = f"{package}.{used.package}.{used.folder}.{used.snake_interface}"
         others.append(f"from {module} import {used.name} as {model(used)}")
     return [*([f"from typing import {', '.join(names)}", ""] if names else []), *sorted(others)]
 
@@ -34,7 +34,13 @@ def annotation(type_: FieldType) -> str:
     """The annotation of a field, with the bounds of its type."""
     low, high = (0, 255) if type_.base == "byte" else (type_.minimum, type_.maximum)
     element = model(type_.message) if type_.message else _PYTHON[type_.base]
+    if type_.base == "char":
+        return _many("Annotated[str, Field(min_length=1, max_length=1)]", type_)
     element = _bounded(element, ge=low, le=high, max_length=type_.maximum_length)
+    return _many(element, type_)
+
+
+def _many(element: str, type_: FieldType) -> str:
     if not type_.many:
         return element
     return _bounded(f"list[{element}]", min_length=type_.size, max_length=type_.size or type_.maximum_size)
@@ -85,22 +91,6 @@ def from_message(value: str, type_: FieldType) -> str:
     else:
         element = f"{_PYTHON[type_.base]}({{}})" if type_.many else "{}"
     return _each(value, type_, element)
-
-
-def schema(type_: FieldType) -> dict[str, Any]:
-    """The JSON schema of a field."""
-    if type_.message:
-        name = type_.message
-        interface = f"{name.package}/{name.folder}/{name.interface}"
-        found: dict[str, Any] = {"$ref": f"ros:{interface}#/$defs/{name.name}"}
-    else:
-        low, high = (0, 255) if type_.base == "byte" else (type_.minimum, type_.maximum)
-        bounds = {"minimum": low, "maximum": high, "maxLength": type_.maximum_length}
-        found = {"type": _JSON[type_.base], **_given(bounds)}
-    if not type_.many:
-        return found
-    lengths = {"minItems": type_.size, "maxItems": type_.size or type_.maximum_size}
-    return {"type": "array", "items": found, **_given(lengths)}
 
 
 def _each(value: str, type_: FieldType, element: str) -> str:
