@@ -121,8 +121,8 @@ def write() -> None:
     (folder / "srv/Ask.srv").write_text("Mixed[<=2] what\nstring<=5 how\n---\nOfMixed[] answer\n")
     (folder / "action/Go.action").write_text("uint8 fast\nMixed where\n---\n---\nfloat64[] path\n")
     (folder / "package.xml").write_text(
-        "<package format=\"3\"><name>conformance_msgs</name><version>1.0.0</version><description>Messages of the"
-        " conformance suite.</description><maintainer email=\"none@example.com\">ifgen</maintainer>"
+        '<package format="3"><name>conformance_msgs</name><version>1.0.0</version><description>Messages of the'
+        ' conformance suite.</description><maintainer email="none@example.com">ifgen</maintainer>'
         "<license>Apache-2.0</license><depend>geometry_msgs</depend><buildtool_depend>"
         "rosidl_default_generators</buildtool_depend><member_of_group>rosidl_interface_packages"
         "</member_of_group></package>\n"

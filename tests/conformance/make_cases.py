@@ -1,4 +1,4 @@
-"""Make the cases of the suite: `python tests/conformance/make_cases.py [FOLDER]`, for what is compiled.
+"""Make the cases of the suite: `python -m tests.conformance.make_cases [FOLDER]`, for what is compiled.
 
 Needs ROS 2 Jazzy's wheels and a C++ compiler. Real rosidl and Fast CDR write every payload: through rclpy for the
 packages of the wheels, and through a C++ program for the others. Takes some minutes. The result is in `cases/`.
@@ -21,6 +21,15 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, Final
 
+import ifgen
+from ifgen_runtime import from_dict, serialize, to_dict
+from ifgen_runtime.field_types import Basic, Field, Text, fields_of, message_class
+
+from tests.codec.big_endian import big_endian
+from tests.codec.support import Classes, generate
+from tests.conformance import definitions
+from tests.conformance.testees.python import text_of
+
 ROOT: Final = Path(__file__).resolve().parents[2]
 CASES: Final = Path(__file__).with_name("cases")
 SHARE: Final = Path(sys.prefix) / "share"
@@ -32,17 +41,7 @@ VISIBILITY: Final = (
 )
 LETTERS: Final = "abcxyz019_/é€𝄞"
 
-sys.path[:0] = [str(ROOT / "tests/codec"), str(Path(__file__).parent)]
-
-import definitions
-import ifgen
-from big_endian import big_endian  # type: ignore[import-not-found]  # found by sys.path
-from ifgen_runtime import from_dict, serialize, to_dict
-from ifgen_runtime.field_types import Basic, Field, Text, fields_of, message_class
-from support import Classes, generate  # type: ignore[import-not-found]
-
-
-# -- values -----------------------------------------------------------------------------------------------------------
+# -- values
 
 
 def text(source: random.Random, type_: Text, ascii_only: bool = False) -> str:
@@ -50,7 +49,10 @@ def text(source: random.Random, type_: Text, ascii_only: bool = False) -> str:
     letters = LETTERS[:11] if ascii_only else LETTERS
     most = 5 if type_.maximum is None else min(5, type_.maximum)
     value = "".join(source.choice(letters) for _ in range(source.randrange(most + 1)))
-    while type_.maximum is not None and len(value.encode("utf-16-le" if type_.wide else "utf-8")) > type_.maximum:
+    while (
+        type_.maximum is not None
+        and len(value.encode("utf-16-le" if type_.wide else "utf-8")) > type_.maximum
+    ):
         value = value[:-1]
     return value
 
@@ -60,19 +62,27 @@ def number(source: random.Random, basic: Basic) -> Any:
     if basic.name == "boolean":
         return source.random() < 0.5
     if basic.is_float:
-        value = source.choice([0.0, -0.0, 1.0, source.uniform(-1e3, 1e3), source.uniform(-1, 1) * 1e30, float("inf")])
+        value = source.choice(
+            [0.0, -0.0, 1.0, source.uniform(-1e3, 1e3), source.uniform(-1, 1) * 1e30, float("inf")]
+        )
         return struct.unpack("<f", struct.pack("<f", value))[0] if basic.size == 4 else value
     if basic.name in ("octet", "char"):
         return bytes([source.randrange(256)]) if basic.name == "octet" else chr(source.randrange(256))
     low, high = basic.range
-    return source.choice([low, high, source.randint(low, high), source.randint(max(low, -100), min(high, 100))])
+    return source.choice(
+        [low, high, source.randint(low, high), source.randint(max(low, -100), min(high, 100))]
+    )
 
 
 def value_of(source: random.Random, field: Field, depth: int) -> Any:
     """A value or an element of a field."""
     if isinstance(field.type, Basic):
         return number(source, field.type)
-    return text(source, field.type) if isinstance(field.type, Text) else random_message(source, field.type, depth + 1)
+    return (
+        text(source, field.type)
+        if isinstance(field.type, Text)
+        else random_message(source, field.type, depth + 1)
+    )
 
 
 def fill(source: random.Random, message: Any, field: Field, count: int, depth: int = 0) -> None:
@@ -94,7 +104,7 @@ def random_message(source: random.Random, cls: type[Any], depth: int = 0) -> Any
     return message
 
 
-# -- what real rosidl and Fast CDR write ------------------------------------------------------------------------------
+# -- what real rosidl and Fast CDR write
 
 
 class Wheels:
@@ -112,7 +122,9 @@ class Wheels:
             return None
         try:
             if cls.endswith("_FeedbackMessage"):
-                return message_class(f"{package}.{folder}", cls.removesuffix("_FeedbackMessage")).Impl.FeedbackMessage  # type: ignore[no-any-return]
+                return message_class(
+                    f"{package}.{folder}", cls.removesuffix("_FeedbackMessage")
+                ).Impl.FeedbackMessage  # type: ignore[no-any-return]
             return message_class(f"{package}.{folder}", cls)
         except (ImportError, AttributeError):
             return None
@@ -155,7 +167,11 @@ class Compiled:
                     convert_to_idl(package, package.name, relative, idl)
             tuples.append(f"{idl}:{relative.with_suffix('.idl')}")
             hash_tuples.append(f"{relative.with_suffix('.idl')}:{output / relative.with_suffix('.json')}")
-        own = [f"{path.name}:{path}" for path in (self._folder / "include").iterdir()] if output.parent.is_dir() else []
+        own = (
+            [f"{path.name}:{path}" for path in (self._folder / "include").iterdir()]
+            if output.parent.is_dir()
+            else []
+        )
         include = [f"{path.name}:{path}" for path in SHARE.iterdir() if path.is_dir()] + own
         arguments = {
             "package_name": package.name,
@@ -181,8 +197,12 @@ class Compiled:
                 generator(str(file))
         (output / "msg").mkdir(exist_ok=True)
         for name in VISIBILITY:  # headers that CMake writes
-            macros = (f"{name.partition('__')[0].upper()}_{word}_{package.name}" for word in ("PUBLIC", "EXPORT"))
-            (output / "msg" / name).write_text("#pragma once\n" + "".join(f"#define {macro}\n" for macro in macros))
+            macros = (
+                f"{name.partition('__')[0].upper()}_{word}_{package.name}" for word in ("PUBLIC", "EXPORT")
+            )
+            (output / "msg" / name).write_text(
+                "#pragma once\n" + "".join(f"#define {macro}\n" for macro in macros)
+            )
 
     def payloads(self, messages: Iterable[tuple[str, bytes]]) -> list[bytes]:
         """The payloads that Fast CDR writes after it read those given, by type; of a new message for no payload."""
@@ -202,7 +222,10 @@ class Compiled:
         if program.exists():
             return program
         files = sorted((self._folder / "include").glob("*/*/detail/dds_fastrtps/*.cpp"))
-        names = [(*file.relative_to(self._folder / "include").parts[:2], file.name.split("__")[0]) for file in files]
+        names = [
+            (*file.relative_to(self._folder / "include").parts[:2], file.name.split("__")[0])
+            for file in files
+        ]
         types = sorted(name for name in self.types() if "/" in name)
         main = "".join(f'#include "{package}/{folder}/{name}.hpp"\n' for package, folder, name in names)
         main += "".join(
@@ -213,8 +236,8 @@ class Compiled:
             "TYPES",
             "".join(
                 f'{{"{name}", [](const B & b) {{ return recode<{name.replace("/", "::")}>(b, '
-                f'[](auto & c, auto & m) {{ {support(name)}cdr_deserialize(c, m); }}, '
-                f'[](auto & c, auto & m) {{ {support(name)}cdr_serialize(m, c); }}); }}}},\n'
+                f"[](auto & c, auto & m) {{ {support(name)}cdr_deserialize(c, m); }}, "
+                f"[](auto & c, auto & m) {{ {support(name)}cdr_serialize(m, c); }}); }}}},\n"
                 for name in types
             ),
         )
@@ -222,13 +245,32 @@ class Compiled:
         source.write_text(main)
         support_source = self._folder / "support.cpp"
         support_source.write_text("".join(f'#include "{file}"\n' for file in files))
-        include = [f"-I{self._folder}/include", f"-I{sys.prefix}/include", *(f"-I{path}" for path in (Path(sys.prefix) / "include").iterdir())]
+        include = [
+            f"-I{self._folder}/include",
+            f"-I{sys.prefix}/include",
+            *(f"-I{path}" for path in (Path(sys.prefix) / "include").iterdir()),
+        ]
         libraries = [
             f"-l{path.name[3:-3]}"
             for path in (Path(sys.prefix) / "lib").glob("lib*__rosidl_typesupport_fastrtps_cpp.so")
         ]
-        command = ["g++", "-std=c++17", "-O0", "-w", *include, str(source), str(support_source), "-o", str(program)]
-        command += [f"-L{sys.prefix}/lib", *libraries, "-lrosidl_typesupport_fastrtps_cpp", "-lrosidl_runtime_c"]
+        command = [
+            "g++",
+            "-std=c++17",
+            "-O0",
+            "-w",
+            *include,
+            str(source),
+            str(support_source),
+            "-o",
+            str(program),
+        ]
+        command += [
+            f"-L{sys.prefix}/lib",
+            *libraries,
+            "-lrosidl_typesupport_fastrtps_cpp",
+            "-lrosidl_runtime_c",
+        ]
         command += ["-lfastcdr", "-Wl,--unresolved-symbols=ignore-all"]
         subprocess.run(command, check=True, env={**os.environ, "LD_LIBRARY_PATH": f"{sys.prefix}/lib"})
         return program
@@ -291,10 +333,14 @@ def hashes_in(folder: Path) -> dict[str, str]:
     """The type hashes that rosidl wrote into a package's folder."""
     files = folder.glob("*/*.json")
     found = (item for file in files for item in json.loads(file.read_text())["type_hashes"])
-    return {item["type_name"]: item["hash_string"] for item in found if item["type_name"].startswith(f"{folder.name}/")}
+    return {
+        item["type_name"]: item["hash_string"]
+        for item in found
+        if item["type_name"].startswith(f"{folder.name}/")
+    }
 
 
-# -- the cases --------------------------------------------------------------------------------------------------------
+# -- the cases
 
 
 def alignment(classes: Classes) -> Iterator[tuple[str, Any]]:
@@ -327,7 +373,9 @@ def bundled(classes: Classes) -> Iterator[tuple[str, Any]]:
 
 def defaults(classes: Classes) -> Iterator[tuple[str, Any]]:
     """A new message of every type."""
-    return ((f"default/{name}", classes[name]()) for name in sorted(classes) if not name.startswith("codec_msgs/"))
+    return (
+        (f"default/{name}", classes[name]()) for name in sorted(classes) if not name.startswith("codec_msgs/")
+    )
 
 
 def big(classes: Classes) -> Iterator[tuple[str, Any]]:
@@ -342,13 +390,26 @@ def big(classes: Classes) -> Iterator[tuple[str, Any]]:
 HOSTILE: Final = (
     *("std_msgs/msg/String", "std_msgs/msg/ColorRGBA", "std_msgs/msg/UInt8MultiArray", "std_msgs/msg/Header"),
     *("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PolygonStamped", "sensor_msgs/msg/JointState"),
-    *("sensor_msgs/msg/PointCloud2", "sensor_msgs/msg/Image", "sensor_msgs/msg/Imu", "sensor_msgs/msg/LaserScan"),
-    *("nav_msgs/msg/Path", "nav_msgs/msg/OccupancyGrid", "tf2_msgs/msg/TFMessage", "visualization_msgs/msg/Marker"),
+    *(
+        "sensor_msgs/msg/PointCloud2",
+        "sensor_msgs/msg/Image",
+        "sensor_msgs/msg/Imu",
+        "sensor_msgs/msg/LaserScan",
+    ),
+    *(
+        "nav_msgs/msg/Path",
+        "nav_msgs/msg/OccupancyGrid",
+        "tf2_msgs/msg/TFMessage",
+        "visualization_msgs/msg/Marker",
+    ),
     *("diagnostic_msgs/msg/DiagnosticArray", "trajectory_msgs/msg/JointTrajectory"),
     *("rcl_interfaces/msg/ParameterEvent", "rcl_interfaces/srv/SetParameters_Request"),
     *("std_srvs/srv/SetBool_Response", "action_msgs/srv/CancelGoal_Event"),
     *("conformance_msgs/msg/Defaults", "conformance_msgs/srv/Ask_Event"),
-    *(f"conformance_msgs/msg/{definitions.file_name(type_)}" for type_ in (*definitions.PRIMITIVES, *definitions.NESTED)),
+    *(
+        f"conformance_msgs/msg/{definitions.file_name(type_)}"
+        for type_ in (*definitions.PRIMITIVES, *definitions.NESTED)
+    ),
 )
 
 
@@ -368,7 +429,17 @@ def text_payload(data: bytes, length: int | None = None) -> str:
 def text_cases() -> Iterator[str]:
     """Strings as they should be, and as they should not."""
     type_ = "std_msgs/msg/String"
-    texts = ["", *("abcdefghi"[:size] for size in range(1, 10)), "é", "é€", "𝄞", "a𝄞b", "\ufeffa", "x" * 300, "é" * 200]
+    texts = [
+        "",
+        *("abcdefghi"[:size] for size in range(1, 10)),
+        "é",
+        "é€",
+        "𝄞",
+        "a𝄞b",
+        "\ufeffa",
+        "x" * 300,
+        "é" * 200,
+    ]
     for index, value in enumerate(texts):
         yield f"text/{index} wire {type_} {text_payload(value.encode() + bytes(1))}"
     for name, data, read in (
@@ -397,7 +468,11 @@ def float_cases() -> Iterator[str]:
         plain |= {"largest": infinite - 1, "minus-infinite": infinite | 1 << bits - 1}
         for name, value in plain.items():
             yield f"float/{bits}/{name} wire {type_} 00010000{struct.pack(f'<{character}', value).hex()}"
-        for name, value in {"nan-payload": quiet | 5, "nan-signalling": infinite | 1, "nan-minus": quiet | 1 << bits - 1}.items():
+        for name, value in {
+            "nan-payload": quiet | 5,
+            "nan-signalling": infinite | 1,
+            "nan-minus": quiet | 1 << bits - 1,
+        }.items():
             payload = f"00010000{struct.pack(f'<{character}', value).hex()}"
             silent = f"00010000{struct.pack(f'<{character}', value | quiet).hex()}"
             usual = f"00010000{struct.pack(f'<{character}', quiet).hex()}"
@@ -410,7 +485,9 @@ def bound_cases() -> Iterator[str]:
     """More elements and characters than the bounds allow: refused, or read as they are."""
     empty = "00000000"
     long = struct.pack("<I", 4).hex() + "01020304"
-    payload = "00010000" + empty + "00" + "000000" + empty + "000000" + "00" + empty + long + empty + empty + "00"
+    payload = (
+        "00010000" + empty + "00" + "000000" + empty + "000000" + "00" + empty + long + empty + empty + "00"
+    )
     yield f"bounds/sequence recode conformance_msgs/msg/Uint8 {payload} refused|{payload}"
     text = f"00010000{empty}{struct.pack('<I', 7).hex()}{b'abcdef'.hex()}00"
     ask = "conformance_msgs/srv/Ask_Request"
@@ -423,7 +500,13 @@ def equal_cases() -> Iterator[str]:
     type_ = "std_msgs/msg/Float64"
     numbers = {"one": 1.0, "two": 2.0, "zero": 0.0, "minus-zero": -0.0, "nan": float("nan")}
     payloads = {name: f"00010000{struct.pack('<d', value).hex()}" for name, value in numbers.items()}
-    for one, other in (("one", "one"), ("one", "two"), ("zero", "minus-zero"), ("nan", "nan"), ("nan", "one")):
+    for one, other in (
+        ("one", "one"),
+        ("one", "two"),
+        ("zero", "minus-zero"),
+        ("nan", "nan"),
+        ("nan", "one"),
+    ):
         result = int(numbers[one] == numbers[other])
         yield f"equal/{one}/{other} equal {type_} {payloads[one]} {payloads[other]} {result}"
     for index, (one, other) in enumerate((("abc", "abc"), ("abc", "abd"), ("abc", "ab"))):
@@ -433,9 +516,6 @@ def equal_cases() -> Iterator[str]:
 
 def constant_cases(wheels: Wheels, registry: Any) -> Iterator[str]:
     """Every constant; those of the wheels have rosidl's values."""
-    sys.path.append(str(Path(__file__).with_name("testees")))
-    from python import text_of  # type: ignore[import-not-found]  # found by sys.path
-
     for interface in registry:
         for message in getattr(interface, "messages", (interface,)):
             cls = wheels.class_of(message.type_name) if message.constants else None
@@ -495,7 +575,12 @@ def main() -> None:
     own = [path for path in _in_order(interfaces) if not (SHARE / path.name).is_dir()]
     compiled = Compiled(folder, [*own, definitions.INTERFACES / "conformance_msgs"])
     goldens = Goldens(Wheels(), compiled)
-    for file, messages in (("alignment", alignment), ("types", bundled), ("default", defaults), ("hostile", hostile)):
+    for file, messages in (
+        ("alignment", alignment),
+        ("types", bundled),
+        ("default", defaults),
+        ("hostile", hostile),
+    ):
         kind = file if file in ("default", "hostile") else "wire"
         cases = goldens.payloads(list(messages(classes)), new=file == "default")
         write(f"{file}.txt", (f"{name} {kind} {type_} {data.hex()}" for name, type_, data in cases))
@@ -535,5 +620,5 @@ def _in_order(interfaces: Path) -> Iterator[Path]:
 if __name__ == "__main__":
     if os.environ.get("GLIBC_TUNABLES") != TUNABLES:
         os.environ["GLIBC_TUNABLES"] = TUNABLES
-        os.execv(sys.executable, [sys.executable, *sys.argv])
+        os.execv(sys.executable, [sys.executable, "-m", "tests.conformance.make_cases", *sys.argv[1:]])
     main()

@@ -72,7 +72,8 @@ _WORDS: Final = {
 
 RESERVED: Final = {
     **{language: frozenset(words.split()) for language, words in _WORDS.items()},
-    "typescript": frozenset(_WORDS["javascript"].split()),
+    # Fields are properties there, which may have any name but those that every object has.
+    "typescript": frozenset({"constructor", "prototype", "__proto__"}),
 }
 """The words that each language keeps for itself."""
 

@@ -1,1 +1,1 @@
-"""The conformance suite: asks a program to read and write messages, and compares its answers with those of real ROS."""
+"""The conformance suite: compares what a program reads and writes with the bytes of real ROS 2."""

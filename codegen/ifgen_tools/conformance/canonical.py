@@ -1,4 +1,4 @@
-"""The canonical text of a payload, read by its definition: an implementation of the wire of its own, for tests only."""
+"""The canonical text of a payload, read by its definition: a second implementation of the wire."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ifgen.definition.types import (
     COLLECTIONS,
     Array,
     BasicType,
+    BoundedWString,
     FieldType,
     NamespacedType,
     StringType,
     UnboundedWString,
-    BoundedWString,
     ValueType,
 )
 
@@ -26,7 +26,7 @@ _FORMATS: Final = {
 
 
 class CanonicalText:
-    """Reads one payload, which must be a right one. `counts` are the places of the counts and lengths in it."""
+    """Reads one payload, which must be a right one. `counts` are the places of counts and lengths in it."""
 
     def __init__(self, registry: Registry, type_name: str, payload: bytes) -> None:
         self._registry = registry

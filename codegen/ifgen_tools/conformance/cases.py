@@ -7,7 +7,7 @@ import struct
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from functools import cached_property
+from functools import cache
 from pathlib import Path
 from typing import Final
 
@@ -33,7 +33,7 @@ def folder() -> Path:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One request, and the replies that are right: data, or `refused`, or `any` where only a crash is wrong."""
+    """One request, and the right replies: data, `refused`, or `any` where only a crash is wrong."""
 
     name: str
     op: str
@@ -62,19 +62,21 @@ def _shortened(text: str) -> str:
     return text if len(text) <= 200 else f"{text[:200]}... ({len(text)} characters)"
 
 
-@dataclass(frozen=True)
+@cache
+def definitions(folder: Path) -> Registry:
+    """The definitions that come with ifgen, and those in `interfaces/` of a suite."""
+    from ifgen.pipeline.stages import load  # only cases of the wire need them
+
+    own = folder / "interfaces"
+    return load(resources.bundled_interfaces(), *([own] if any(own.glob("*/package.xml")) else []))
+
+
+@dataclass(frozen=True, slots=True)
 class Suite:
     """All cases of a folder whose names match one of the patterns; all cases if there is none."""
 
     folder: Path = field(default_factory=folder)
     only: tuple[str, ...] = ()
-
-    @cached_property
-    def registry(self) -> Registry:
-        """The definitions of all types."""
-        from ifgen.pipeline.stages import load  # only cases of the wire need them
-
-        return load(resources.bundled_interfaces(), self.folder / "interfaces")
 
     def __iter__(self) -> Iterator[Case]:
         for line in self._lines():
@@ -116,7 +118,7 @@ class Suite:
                 return [Case(f"{name}:{kind}", kind, type_name, tuple(arguments), tuple(accepted.split("|")))]
 
     def _wire(self, name: str, type_name: str, payload: str) -> Iterator[Case]:
-        text = CanonicalText(self.registry, type_name, bytes.fromhex(payload)).text
+        text = CanonicalText(definitions(self.folder), type_name, bytes.fromhex(payload)).text
         size = str(len(payload) // 2)
         yield Case(f"{name}:recode", "recode", type_name, (payload,), (payload,))
         yield Case(f"{name}:dump", "dump", type_name, (payload,), (text,))
@@ -131,7 +133,7 @@ class Suite:
             if size < half or size >= len(data) - half:
                 cut = payload[: 2 * size] or "-"
                 yield Case(f"{name}/cut/{size}:recode", "recode", type_name, (cut,), ("refused",), True)
-        for place in CanonicalText(self.registry, type_name, data).counts:
+        for place in CanonicalText(definitions(self.folder), type_name, data).counts:
             for count in _HUGE:
                 changed = data[:place] + struct.pack("<I", count) + data[place + 4 :]
                 at = f"{name}/count/{place}/{count:x}:recode"

@@ -21,16 +21,24 @@ _MOST = 20  # failures that are printed
     epilog="Example: ifgen conformance --only 'alignment/*' -- node testee.mjs",
 )
 @click.argument("testee", metavar="TESTEE...", nargs=-1, type=click.UNPROCESSED, required=True)
-@click.option("--only", metavar="PATTERN", multiple=True, help="Only cases with such a name; may be repeated.")
+@click.option(
+    "--only", metavar="PATTERN", multiple=True, help="Only cases with such a name; may be repeated."
+)
 @click.option(
     "--failures",
     metavar="FILE",
     type=EXISTING_FILE,
-    help="A list of expected failures: lines `[some] PATTERN REASON`. If one of them passes, that is an error.",
+    help="Expected failures, in lines `[some] PATTERN REASON`. If one of them passes, that is an error.",
 )
-@click.option("--cases", "folder", metavar="DIR", type=FOLDER, help="Another folder with cases/ and interfaces/.")
-@click.option("--timeout", metavar="SECONDS", type=click.FloatRange(min=0, min_open=True), default=10.0, show_default=True,
-              help="The longest time that a reply may take.")  # fmt: skip
+@click.option("--cases", "folder", metavar="DIR", type=FOLDER, help="Another folder with cases/.")
+@click.option(
+    "--timeout",
+    metavar="SECONDS",
+    type=click.FloatRange(min=0, min_open=True),
+    default=10.0,
+    show_default=True,
+    help="The longest time that a reply may take.",
+)
 @click.option("--junit", metavar="FILE", type=OUTPUT_FILE, help="Write the results as JUnit XML.")
 @click.option("--json", "json_file", metavar="FILE", type=OUTPUT_FILE, help="Write the results as JSON.")
 def conformance(
@@ -47,6 +55,7 @@ def conformance(
     TESTEE is a command that answers requests on its standard input, as docs/conformance.md describes.
     """
     from ifgen.command_kit.tool import ToolError
+
     from ifgen_tools.conformance.cases import Suite
     from ifgen_tools.conformance.report import Report, read_expectations, run
     from ifgen_tools.conformance.testee import Testee
@@ -65,7 +74,10 @@ def conformance(
     finally:
         program.close()
     if not report.results:
-        raise ToolError(f"no case has a name like {' or '.join(map(repr, only))}", "a name is as in alignment/Int8/scalar/3/1:dump")
+        raise ToolError(
+            f"no case has a name like {' or '.join(map(repr, only))}",
+            "a name is as in alignment/Int8/scalar/3/1:dump",
+        )
     if failed > _MOST:
         print(f"... and {failed - _MOST} more failures")
     print("\n".join(report.lines()))

@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 from ifgen.command_kit.tool import ToolError
 
 from ifgen_tools.conformance.cases import MEMORY, Case
-from ifgen_tools.conformance.testee import Reply, Testee
+from ifgen_tools.conformance.testee import Testee
 
 Outcome = Literal["passed", "failed", "expected", "skipped"]
 _OUTCOMES: Final[tuple[Outcome, ...]] = ("passed", "failed", "expected", "skipped")
@@ -96,7 +96,9 @@ class Report:
     @property
     def is_right(self) -> bool:
         """Whether nothing failed or passed unexpectedly."""
-        return not any(result.outcome == "failed" for result in self.results) and not any(self.unexpected_passes)
+        return not any(result.outcome == "failed" for result in self.results) and not any(
+            self.unexpected_passes
+        )
 
     def table(self) -> dict[str, Counter[Outcome]]:
         """The number of each outcome, by group."""
@@ -131,9 +133,8 @@ class Report:
         counts = sum(self.table().values(), Counter[Outcome]())
         lines = ['<?xml version="1.0" encoding="utf-8"?>']
         skipped = counts["skipped"] + counts["expected"]
-        lines.append(
-            f'<testsuite name="conformance" tests="{len(self.results)}" failures="{counts["failed"]}" skipped="{skipped}">'
-        )
+        numbers = f'tests="{len(self.results)}" failures="{counts["failed"]}" skipped="{skipped}"'
+        lines.append(f'<testsuite name="conformance" {numbers}>')
         for result in self.results:
             attributes = f"classname={quoteattr(result.case.group)} name={quoteattr(result.case.name)}"
             element = {"passed": "", "failed": "failure"}.get(result.outcome, "skipped")

@@ -7,6 +7,7 @@ import re
 import selectors
 import subprocess
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Literal
@@ -42,7 +43,7 @@ class Testee:
         self._next = 0
 
     def hello(self) -> dict[str, str]:
-        """Start the program, and return what it says of itself. ToolError if it does not speak the protocol."""
+        """Start the program, and return what it says of itself. ToolError if it is no testee."""
         reply = self.ask("hello", "-", timeout=_FIRST_REPLY)
         pairs = dict(word.partition("=")[::2] for word in reply.data.split())
         if reply.verdict != "ok" or pairs.get("protocol") != "1":
@@ -120,10 +121,8 @@ class Testee:
         if process is None:
             return None
         assert process.stdin is not None and process.stdout is not None
-        try:
+        with suppress(BrokenPipeError):
             process.stdin.close()
-        except BrokenPipeError:
-            pass
         try:
             return process.wait(1)
         except subprocess.TimeoutExpired:
