@@ -18,6 +18,7 @@ from ifgen.model import Model
 from ifgen.pipeline.model import load_model
 
 ROOT = resources.PACKAGE.parents[1]
+IFGEN = Path(sys.executable).with_name("ifgen")
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Wshadow", "-Werror"]
 
 
@@ -30,7 +31,9 @@ def needs(tool: str) -> str:
 
 def load(*paths: Path) -> Model:
     """The model of these interfaces and of all that they need."""
-    return load_model(*paths, include=(ROOT / "interfaces", ROOT / "tests/conformance/interfaces"), with_deps=True)
+    return load_model(
+        *paths, include=(ROOT / "interfaces", ROOT / "tests/conformance/interfaces"), with_deps=True
+    )
 
 
 def corpus(folder: Path) -> Model:
@@ -86,4 +89,4 @@ def run(command: Sequence[str], cwd: Path | None = None) -> str:
 
 def conformance(*testee: str) -> str:
     """The summary of the conformance suite, which a testee passes."""
-    return run([str(ROOT / ".venv/bin/ifgen"), "conformance", "--", *testee])
+    return run([str(IFGEN), "conformance", "--", *testee])

@@ -9,7 +9,7 @@ import pytest
 from ifgen.model import Model
 from ifgen_generators.c import GENERATOR
 
-from .support import ROOT, WARNINGS, build, conformance, corpus, generate, load, needs, run, write
+from .support import IFGEN, ROOT, WARNINGS, build, conformance, corpus, generate, load, needs, run, write
 
 EVERYTHING = {"*.string": 512, "*.wstring": 64, "*.sequence": 8}
 ROBOT = {
@@ -147,10 +147,9 @@ def test_a_microcontroller_publishes_what_python_reads(tmp_path: Path) -> None:
     project = tmp_path / "languages/firmware/a"
     config = project / "pyproject.toml"
     config.write_text(config.read_text().replace("../../../interfaces", str(ROOT / "interfaces")))
-    ifgen = ROOT / ".venv/bin/ifgen"
-    run(["make", f"IFGEN={ifgen}"], project)
+    run(["make", f"IFGEN={IFGEN}"], project)
     done = subprocess.run(
-        [str(ifgen), "run", str(project / "bridge.py")],
+        [str(IFGEN), "run", str(project / "bridge.py")],
         capture_output=True,
         text=True,
         timeout=120,
