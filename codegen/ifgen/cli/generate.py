@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from ifgen.reading.search_path import WithDeps
 
 _UNDECLARED: Final = "undeclared-dependency"
+_MOST_REMOVED: Final = 20
+"""Lines about what was removed; the rest is only counted."""
 
 # Late imports: the stages take longest to load, and a mistake in an option is told without them.
 
@@ -181,8 +183,11 @@ def _say_what_is_left_out(left_out: Sequence[LeftOut]) -> None:
 def _report(done: Generated, settings: Settings) -> None:
     output, targets = settings.output, [target.out for target in settings.custom.targets]
     folders = sorted({output, *targets}, key=lambda folder: (len(folder.parts), folder), reverse=True)
-    for path in dict.fromkeys(_whole_package(path, folders) or path for path in done.removed):
+    removed = list(dict.fromkeys(_whole_package(path, folders) or path for path in done.removed))
+    for path in removed[:_MOST_REMOVED]:
         print(f"removed {shown_path(path)}")
+    if more := removed[_MOST_REMOVED:]:
+        print(f"removed {len(more)} more, the last of them {shown_path(more[-1])}")
     for folder in dict.fromkeys((output, *targets)):
         _report_folder(done, folder, folders, always=folder == output and settings.custom.python)
 

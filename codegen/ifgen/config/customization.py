@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
 from ifgen.config.keys import FLAG, PATH, Kind, key, list_of, one_of, required, text
-from ifgen.diagnostics import Span
+from ifgen.diagnostics import Label, Span
 
 Per = Literal["package", "interface", "node", "run"]
 
@@ -36,6 +36,12 @@ class Output:
     per: Per = required(one_of(*get_args(Per)))
     only: tuple[str, ...] = key(_ONLY, [])
     span: Span | None = field(default=None, compare=False, repr=False)
+    spans: Mapping[str, Span] = field(default_factory=dict[str, Span], compare=False, repr=False)
+
+    def label(self, key: str) -> Label | None:
+        """The place of a key in the configuration; of the table, if that does not have it."""
+        span = self.spans.get(key, self.span)
+        return None if span is None else Label(span)
 
 
 @dataclass(frozen=True, slots=True)

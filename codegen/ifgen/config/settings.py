@@ -99,7 +99,12 @@ def settle(  # noqa: PLR0913 - one for each option
         templates=templates or config.templates,
         filters=config.filters,
         outputs=tuple(
-            replace(output, span=config.place("outputs", name)) for name, output in config.outputs.items()
+            replace(
+                output,
+                span=config.place("outputs", name),
+                spans={key: config.place("outputs", name, key) for key in ("template", "path", "only")},
+            )
+            for name, output in config.outputs.items()
         ),
         partial=partial,
         tests=config.tests if tests is None else tests,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ifgen.config.customization import Customization, Distributions
 from ifgen.definition.interfaces import InterfacePackage
-from ifgen.diagnostics import Diagnostic, InputError, Label
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.messages.classes import Facts
 from ifgen.generator_py.messages.package import module_path, plan_interface, plan_shared
@@ -191,6 +191,7 @@ class _Outputs:
 
 def _taken(planned: PlannedOutput) -> Diagnostic:
     output = planned.output
-    label = None if output.span is None else Label(output.span)
     message = f"output '{output.name}' cannot be made: ifgen writes its own file at '{planned.artifact.path}'"
-    return Diagnostic("same-path", message, label, help="replace the template of that file, or choose a path")
+    return Diagnostic(
+        "same-path", message, output.label("path"), help="replace the template of that file, or choose a path"
+    )

@@ -326,3 +326,64 @@ def test_an_output_in_the_place_of_a_users_node(ifgen: Run, project: Path) -> No
         "ifgen writes its own file at 'robot/robot/talker.py'" in " ".join(done.err.split()),
     ) == (1, True)
     assert not Path("generated").exists()
+
+
+def test_an_output_that_is_no_python_names_the_line_of_its_template(ifgen: Run, project: Path) -> None:
+    write(project / "templates/part.j2", "{% macro part(name) %}\ndef {{ name }}(\n{% endmacro %}\n")
+    write(
+        project / "templates/about.txt.j2",
+        "{% from 'part.j2' import part %}\nx = 1\n{{ part(package.name) }}\ny = 2\n",
+    )
+    write(project / "pyproject.toml", PYPROJECT.replace('about.txt"\nper', 'about.py"\nper'))
+    done = ifgen("generate")
+    assert done.code == 1 and not Path("generated").exists()
+    assert (
+        "error[broken-output]: template part.j2 makes a broken file: about.py:2: '(' was never"
+        in " ".join(done.err.replace("a_msgs/", "").split())
+    )
+    assert "--> templates/part.j2:2:1\n" in done.err
+    assert "the line in the file is `def a_msgs(`" in done.err
+
+
+def test_an_error_points_to_the_key(ifgen: Run, project: Path) -> None:
+    write(project / "pyproject.toml", PYPROJECT.replace("{package}/about.txt", "{pakage}/about.txt"))
+    line = PYPROJECT.splitlines().index('path = "{package}/about.txt"') + 1
+    assert f"--> pyproject.toml:{line}:1\n" in ifgen("generate").err
+
+
+def test_line_breaks_that_a_tag_takes_away(ifgen: Run, project: Path) -> None:
+    write(
+        project / "templates/index.md.j2", "# All\n{%- for p in packages %}\n* {{ p.name }}\n{%- endfor %}\n"
+    )
+    done = ifgen("templates", "check")
+    assert (
+        done.code == 0
+        and "warning[trimmed-line]: `{%-` removes the line break before it\n --> templates/index.md.j2:2:1"
+        in done.out
+    )
+    write(
+        project / "templates/index.md.j2",
+        "{% for p in packages %}\n{%- if true %}\n* {{ p.name }}\n{% endif %}\n{% endfor %}\n",
+    )
+    assert ifgen("templates", "check").out == "templates: no mistakes\n"
+
+
+def test_templates_in_an_installed_package(
+    ifgen: Run, project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (project / "templates").rename(write(project / "site/acme_theme/__init__.py", "").parent / "templates")
+    monkeypatch.syspath_prepend(project / "site")
+    write(project / "pyproject.toml", PYPROJECT.replace('"templates"', '"package:acme_theme/templates"'))
+    assert ifgen("generate").code == 0 and Path("generated/index.md").exists()
+    write(project / "pyproject.toml", PYPROJECT.replace('"templates"', '"package:acme_them/templates"'))
+    assert "names package:acme_them/templates, which does not exist" in ifgen("generate").err
+
+
+def test_json_in_a_template(ifgen: Run, project: Path) -> None:
+    write(
+        project / "templates/index.md.j2",
+        "{{ model|tojson }}\n{{ packages[0].interfaces[0].messages[0]|tojson }}\n",
+    )
+    assert ifgen("generate").code == 0
+    whole, message = map(json.loads, Path("generated/index.md").read_text().splitlines())
+    assert message in whole["types"]

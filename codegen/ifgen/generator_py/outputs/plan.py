@@ -12,7 +12,7 @@ from typing import Final
 
 from ifgen.config.customization import Output
 from ifgen.definition.names import snake_case
-from ifgen.diagnostics import Diagnostic, InputError, Label
+from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generator_py.artifact import Artifact
 from ifgen.model import Package
 from ifgen.reading import manifest
@@ -197,15 +197,18 @@ def _idle_patterns(output: Output, packages: Sequence[Package]) -> Iterator[Diag
             known = sorted({package.name for package in packages})
             close = get_close_matches(pattern.partition("/")[0], known, n=1)
             advice = f"did you mean {close[0]}?" if close else None
-            yield _problem(output, f"'{pattern}' matches nothing", advice, rule="unused-output")
+            yield _problem(output, f"'{pattern}' matches nothing", advice, rule="unused-output", key="only")
 
 
 def _matches_nothing(output: Output) -> Diagnostic:
     what = "package" if output.per == "run" else output.per
     picked = " that `only` matches" if output.only else ""
-    return _problem(output, f"it matches nothing: there is no {what}{picked}", rule="unused-output")
+    return _problem(
+        output, f"it matches nothing: there is no {what}{picked}", rule="unused-output", key="only"
+    )
 
 
-def _problem(output: Output, text: str, help_: str | None = None, *, rule: str = "output-path") -> Diagnostic:
-    label = None if output.span is None else Label(output.span)
-    return Diagnostic(rule, f"output '{output.name}' cannot be made: {text}", label, help=help_)
+def _problem(
+    output: Output, text: str, help_: str | None = None, *, rule: str = "output-path", key: str = "path"
+) -> Diagnostic:
+    return Diagnostic(rule, f"output '{output.name}' cannot be made: {text}", output.label(key), help=help_)

@@ -22,6 +22,8 @@ from ifgen.reading.storage import MAX_GENERATED, read_limited
 
 _OURS = "ifgen/"
 _SUFFIX = ".j2"
+# After a line that has text: with nothing but a tag before it, there is no line break left to remove.
+_TRIMMED = re.compile(r"^[^{\n]*[^{\s][^{\n]*\n[ \t]*(\{%-)", re.MULTILINE)
 _NAMES = re.compile(r"""["']([^"'{}%]+)["']""")
 
 
@@ -50,6 +52,7 @@ class _Check:
         if conflicts := [found for path in self._own.values() for found in _conflicts(path)]:
             return conflicts  # what else there is to say would be about their marks
         found = [_unknown(o, self._paths) for o in self._custom.outputs if o.template not in self._paths]
+        found += filter(None, map(_trimmed, self._own.values()))
         found += [_unused(self._own[name], name, self._ours) for name in self._unused()]
         touched = [name for name in TEMPLATES if not self._own.keys().isdisjoint(self._used_by(name))]
         found += self.checked(touched if self._own or self._custom.outputs else TEMPLATES).found()
@@ -124,6 +127,18 @@ def _conflicts(path: Path) -> Iterator[Diagnostic]:
         yield Diagnostic("template-syntax", message, label, help="keep what you want, and delete the marks")
 
 
+def _trimmed(path: Path) -> Diagnostic | None:
+    """Warn of a tag that begins a line and takes the line break before it away: lines run together."""
+    source = Source(path, _text(path))
+    match = _TRIMMED.search(source.text)
+    if match is None:
+        return None
+    label = Label(Span(source, match.start(1), match.end(1)), "this joins the line to the one before")
+    advice = "write `{%`: ifgen removes the line of a tag that stands alone, as trim_blocks of jinja2 does"
+    message = "`{%-` removes the line break before it"
+    return Diagnostic("trimmed-line", message, label, help=advice, severity="warning")
+
+
 def _unused(path: Path, name: str, ours: dict[str, Path]) -> Diagnostic:
     close = get_close_matches(name, ours, n=1)
     advice = f"did you mean {close[0]}?" if close else "`ifgen templates list` names all of them"
@@ -135,5 +150,4 @@ def _unknown(output: Output, known: dict[str, Path]) -> Diagnostic:
     close = get_close_matches(output.template, known, n=1)
     advice = f"did you mean {close[0]}?" if close else "ifgen looks for it in `templates` of [tool.ifgen]"
     message = f"output '{output.name}' cannot be made: there is no template {output.template}"
-    label = None if output.span is None else Label(output.span)
-    return Diagnostic("unknown-template", message, label, help=advice)
+    return Diagnostic("unknown-template", message, output.label("template"), help=advice)
