@@ -52,6 +52,8 @@ class Bounds:
         """Find the room for the fields of a message: `unbounded` and `overflowing` have too little."""
         for field in message.fields:
             room = self._rooms[field.id] = Room(self._elements(message, field), self._text(message, field))
+            if self.unbounded and self.unbounded[-1].field is field:
+                continue
             values = field.default_elements or ((field.default_value,) if field.default_value else ())
             lengths = (_length(str(value.value), field.type.primitive) for value in values)
             if len(values) > (room.elements or 1) or (

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -15,11 +16,17 @@ _LONGEST_RUN: Final = 64
 
 _COUNT_SIZE: Final = 4
 
-# Macros of system headers that constants of messages are named after.
+# Macros of headers that programs may include before ours. The struct needs the name; the macro comes back.
 _MACROS: Final = {
-    "DEBUG", "DELETE", "DOMAIN", "EOF", "ERROR", "FALSE", "FATAL", "INFO", "NAN", "NONE", "NULL", "OK",
-    "OVERFLOW", "TRUE", "UNDERFLOW", "UNKNOWN", "WARN",
+    "DEBUG", "DELETE", "DOMAIN", "ERROR", "FALSE", "FATAL", "INFO", "NONE", "OK", "OVERFLOW", "TRUE",
+    "UNDERFLOW", "UNKNOWN", "WARN",
 }  # fmt: skip
+
+# Macros of the standard library, which our own headers include: nobody could use a constant of this name.
+_STANDARD_MACROS: Final = re.compile(
+    r"U?INT(_LEAST|_FAST)?(8|16|32|64)_(MIN|MAX|C)|(U?INT(PTR|MAX)|SIZE|PTRDIFF|WCHAR|WINT|SIG_ATOMIC)_(MIN|MAX)"
+    r"|(S?CHAR|UCHAR|U?SHRT|U?INT|U?LONG|U?LLONG|FLT|DBL|LDBL)_(MIN|MAX)|NULL|EOF|NAN|INFINITY|HUGE_VAL"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +161,12 @@ def qualified(message: Message | TypeReference) -> str:
     return f"::{safe_name(message.package, 'cpp')}::{message.folder}::{safe_name(message.name, 'cpp')}"
 
 
+def constant_name(constant: Constant) -> str:
+    """The name of a constant, with `_` after a reserved word or a macro of the standard library."""
+    name = constant.names["cpp"]
+    return f"{name}_" if _STANDARD_MACROS.fullmatch(name) else name
+
+
 def cpp_type(type_: FieldType) -> str:
     """The type of a field."""
     texts = {"string": "std::string", "wstring": "std::u16string"}
@@ -199,7 +212,7 @@ def _initializer(field: Field) -> str:
 
 
 def _constant(constant: Constant) -> str:
-    name, text = constant.names["cpp"], literal(constant.exact_value, constant.type)
+    name, text = constant_name(constant), literal(constant.exact_value, constant.type)
     if constant.type.primitive in {"string", "wstring"}:
         return f"static inline const {cpp_type(constant.type)} {name} = {text};"
     return f"static constexpr {cpp_type(constant.type)} {name} = {text};"

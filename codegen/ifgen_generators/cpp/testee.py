@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ifgen.model import Interface, Model, Package, safe_name
 
 from ifgen_generators import c_family
-from ifgen_generators.cpp.headers import qualified
+from ifgen_generators.cpp.headers import constant_name, qualified
 
 
 def testee(model: Model) -> Iterator[tuple[str, str]]:
@@ -49,7 +49,7 @@ def _interface(interface: Interface) -> Iterator[str]:
     for message in interface.types:
         name = qualified(message)
         constants = ", ".join(
-            f'{{"{constant.name}", text_of({name}::{constant.names["cpp"]})}}'
+            f'{{"{constant.name}", text_of({name}::{constant_name(constant)})}}'
             for constant in message.constants
         )
         yield _type(message.type_name, name, f"answer<{name}>", constants)

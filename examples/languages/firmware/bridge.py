@@ -13,7 +13,10 @@ import rclpy
 from rclpy.executors import ExternalShutdownException
 from sensor_msgs.msg import Imu, JointState
 
-EMULATOR = ["qemu-system-arm", "-M", "microbit", "-nographic", "-semihosting", "-kernel"]
+EMULATOR = [
+    *("qemu-system-arm", "-M", "microbit", "-display", "none", "-serial", "none", "-monitor", "none"),
+    *("-chardev", "stdio,id=out", "-semihosting-config", "enable=on,target=native,chardev=out", "-kernel"),
+]
 FIRMWARE = Path(__file__).parent / "build" / "firmware.elf"
 TYPES = {"imu": Imu, "joint_states": JointState}
 

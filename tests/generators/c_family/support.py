@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
@@ -17,6 +18,7 @@ from ifgen.model import Model
 from ifgen.pipeline.model import load_model
 
 ROOT = resources.PACKAGE.parents[1]
+IFGEN = Path(sys.executable).with_name("ifgen")
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Wshadow", "-Werror"]
 
 
@@ -29,7 +31,15 @@ def needs(tool: str) -> str:
 
 def load(*paths: Path) -> Model:
     """The model of these interfaces and of all that they need."""
-    return load_model(*paths, include=(ROOT / "interfaces",), with_deps=True)
+    return load_model(
+        *paths, include=(ROOT / "interfaces", ROOT / "tests/conformance/interfaces"), with_deps=True
+    )
+
+
+def corpus(folder: Path) -> Model:
+    """The model of the interfaces with every trap, which authors of generators get."""
+    run([sys.executable, "-m", "ifgen", "generators", "test", "--corpus", str(folder)])
+    return load(folder / "trap_msgs", folder / "other_msgs")
 
 
 def generate(generator: Generator, model: Model, **options: Any) -> Response:
@@ -79,4 +89,4 @@ def run(command: Sequence[str], cwd: Path | None = None) -> str:
 
 def conformance(*testee: str) -> str:
     """The summary of the conformance suite, which a testee passes."""
-    return run([str(ROOT / ".venv/bin/ifgen"), "conformance", "--", *testee])
+    return run([str(IFGEN), "conformance", "--", *testee])

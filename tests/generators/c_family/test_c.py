@@ -9,7 +9,7 @@ import pytest
 from ifgen.model import Model
 from ifgen_generators.c import GENERATOR
 
-from .support import ROOT, WARNINGS, build, conformance, generate, load, needs, run, write
+from .support import IFGEN, ROOT, WARNINGS, build, conformance, corpus, generate, load, needs, run, write
 
 EVERYTHING = {"*.string": 512, "*.wstring": 64, "*.sequence": 8}
 ROBOT = {
@@ -86,6 +86,14 @@ def everything() -> Model:
 
 
 @pytest.mark.slow
+def test_the_corpus_of_traps_compiles(tmp_path: Path) -> None:
+    huge = {"trap_msgs/msg/HugeBounds.text": 9, "trap_msgs/msg/HugeBounds.bytes": 9}
+    write(generate(GENERATOR, corpus(tmp_path), bounds={**EVERYTHING, **huge}, testee=True), tmp_path / "c")
+    compiler = [needs("gcc"), *STRICT, "-O0"]
+    assert build(tmp_path / "c", compiler, ".c", tmp_path / "program").is_file()
+
+
+@pytest.mark.slow
 def test_the_suite_passes_with_sanitizers(everything: Model, tmp_path: Path) -> None:
     write(generate(GENERATOR, everything, bounds=EVERYTHING, testee=True), tmp_path)
     flags = [*STRICT, "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover"]
@@ -139,10 +147,9 @@ def test_a_microcontroller_publishes_what_python_reads(tmp_path: Path) -> None:
     project = tmp_path / "languages/firmware/a"
     config = project / "pyproject.toml"
     config.write_text(config.read_text().replace("../../../interfaces", str(ROOT / "interfaces")))
-    ifgen = ROOT / ".venv/bin/ifgen"
-    run(["make", f"IFGEN={ifgen}"], project)
+    run(["make", f"IFGEN={IFGEN}"], project)
     done = subprocess.run(
-        [str(ifgen), "run", str(project / "bridge.py")],
+        [str(IFGEN), "run", str(project / "bridge.py")],
         capture_output=True,
         text=True,
         timeout=120,
