@@ -17,8 +17,8 @@ import lark
 from ifgen import resources
 from ifgen.activation import reason_against_domain
 from ifgen.config import installing
-from ifgen_runtime import neighbours
 from ifgen_runtime.codec import choice
+from ifgen_runtime.domains import neighbours
 from ifgen_runtime.installation import NATIVE
 
 from ifgen_tools.running import elsewhere, other_processes

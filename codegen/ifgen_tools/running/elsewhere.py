@@ -6,7 +6,8 @@ import os
 import sys
 
 from ifgen.activation import reason_against_domain
-from ifgen_runtime import domain_id, neighbours
+from ifgen_runtime import domains
+from ifgen_runtime.domains import neighbours
 
 
 def usable_environment() -> dict[str, str]:
@@ -17,6 +18,6 @@ def usable_environment() -> dict[str, str]:
 
 def tell(transport: str) -> None:
     """Say on stderr how many nodes run on the other transport, if there are some, and none on this one."""
-    domain = domain_id.of_environment()
+    domain = domains.of_environment()
     if neighbours.is_elsewhere_only(transport, domain):
         print(f"note: {neighbours.on_other(transport, domain)}", file=sys.stderr, flush=True)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from ifgen_runtime.parameter_scalars import read_scalar
+from ifgen_runtime.parameters.parameter_scalars import read_scalar
 
 from ifgen_tools.launching.errors import LaunchError, Place
 from ifgen_tools.launching.reading.tree import MAX_DEPTH, Element

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import FrameType
 from typing import Any, Final
 
-from ifgen_runtime import parameter_yaml
+from ifgen_runtime.parameters import parameter_yaml
 from launch import LaunchContext, LaunchDescription, LaunchDescriptionEntity
 from launch.action import Action
 from launch.actions import ExecuteProcess
