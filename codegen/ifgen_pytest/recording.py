@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
+from threading import RLock
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
@@ -62,7 +63,8 @@ class Recording:
         self._recorder = Recorder(
             path, compression="zstd" if find_spec("zstandard") else "none", overwrite=True
         )
-        self._known: set[str] = set()
+        self._topics: set[str] = set()
+        self._adding = RLock()  # a finaliser may publish meanwhile
         self._refused: dict[str, str] = {}
         self._has_failed = False
 
@@ -95,9 +97,11 @@ class Recording:
     def _write(self, topic: str, publisher: Any, message: Any, now: int) -> None:
         """Record a message. A recording that is over, or cannot have it, is no reason to fail in a node."""
         try:
-            if topic not in self._known:
-                self._known.add(topic)
-                self._recorder.add_topic(topic, publisher.msg_type, publisher.qos_profile)
+            # The topic comes first, with its QoS: a message of another thread would add it without.
+            with self._adding:
+                if topic not in self._topics:
+                    self._recorder.add_topic(topic, publisher.msg_type, publisher.qos_profile)
+                    self._topics.add(topic)
             if isinstance(message, bytes):
                 self._recorder.write_serialized(topic, message, now)
             else:

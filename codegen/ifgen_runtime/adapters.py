@@ -12,10 +12,9 @@ from collections import deque
 from dataclasses import dataclass
 from importlib import import_module
 from pkgutil import iter_modules
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Never, TypeVar
 
 from ifgen_runtime.codec import deserialize, serialize
-from ifgen_runtime.undecided import Undecided, UndecidedError, lost, undecided
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -219,3 +218,28 @@ def _joined(steps: tuple[Adapter, ...], cls: type[Any]) -> Adapter:
 
     is_complete = all(step.downgrade is not None for step in steps)
     return Adapter(old, cls, upgrade, downgrade if is_complete else None, last.new_hash, steps[0].within)
+
+
+class UndecidedError(NotImplementedError):
+    """A message cannot be converted before a person has decided how: the file, the line and the field."""
+
+
+class Undecided:
+    """The type of what is left to decide. No field takes it, so type checkers report each place."""
+
+
+def undecided(question: str) -> Undecided:
+    """Stand for a value that a person has to decide on; the question names the field."""
+    raise _left_open(question)
+
+
+def lost(value: Never, question: str) -> None:
+    """Stand for the decision what becomes of a value that the other version has no field for."""
+    raise _left_open(question)
+
+
+def _left_open(question: str) -> UndecidedError:
+    import inspect  # takes longer to import than all adapters
+
+    frame = inspect.stack(0)[2]
+    return UndecidedError(f"{frame.filename}:{frame.lineno}: {question}")

@@ -76,3 +76,13 @@ class WrongKind(Problem):
     def named(self, path: str) -> Exception:
         """The error for users, with the path of the message or field that the place is in."""
         return TypeError(f"{path}{self.place}: {self.text}")
+
+
+def printable(text: str) -> str:
+    """The text with a question mark in place of all that could control a terminal or end a line."""
+    return text if text.isprintable() else "".join(each if each.isprintable() else "?" for each in text)
+
+
+def printable_lines(text: str) -> str:
+    """The same for a text of several lines."""
+    return text if text.isprintable() else "\n".join(map(printable, text.split("\n")))

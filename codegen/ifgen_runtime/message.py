@@ -135,7 +135,7 @@ class _SlotTypes:
     """`SLOT_TYPES`, made when first asked for: it needs rosidl_parser."""
 
     def __get__(self, message: Message | None, owner: type[Message]) -> tuple[Any, ...]:
-        from ifgen_runtime.slot_types import slot_types_of  # with rosidl_parser
+        from ifgen_runtime.rosidl_types import slot_types_of  # with rosidl_parser
 
         owner = generated_class(owner)
         types = owner.SLOT_TYPES = slot_types_of(owner)
@@ -300,7 +300,7 @@ class Message(metaclass=MessageMeta):
 
     def _repr_html_(self) -> str:
         """The message as notebooks show it: a table of its fields."""
-        from ifgen_runtime.notebook import html_of  # only notebooks ask
+        from ifgen_runtime.convert.notebook import html_of  # only notebooks ask
 
         return html_of(self)
 

@@ -6,7 +6,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Final
 
-from ifgen_runtime import neighbours
+from ifgen_runtime.domains import neighbours
 
 from ifgen_tools.ros_graph import node_names
 

@@ -16,7 +16,7 @@ import sys
 import rclpy
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from ifgen_runtime import parameter_yaml
+from ifgen_runtime.parameters import parameter_yaml
 from tests.runtime.test_parameter_yaml import BEYOND, NAMES, VALUES, bits
 
 file = sys.argv[1]

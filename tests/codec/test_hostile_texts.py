@@ -10,7 +10,8 @@ import pytest
 import yaml
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from ifgen_runtime import ConversionError, from_dict, from_json, from_yaml, serialize, to_yaml, yaml_text
+from ifgen_runtime import ConversionError, from_dict, from_json, from_yaml, serialize, to_yaml
+from ifgen_runtime.convert import yaml_text
 
 from .support import Classes
 

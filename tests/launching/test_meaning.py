@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-from ifgen_runtime import parameter_yaml
+from ifgen_runtime.parameters import parameter_yaml
 from launch._errors import LaunchError
 from launch.launch_context import Files
 

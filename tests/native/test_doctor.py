@@ -210,7 +210,7 @@ def test_nodes_of_others_are_counted(tmp_path: Path) -> None:
                 [
                     sys.executable,
                     "-c",
-                    "from ifgen_tools.running import other_processes as o; print(o.look()[0])",
+                    "from ifgen_tools.running import elsewhere; print(elsewhere.look()[0])",
                 ],
                 env=reached,
                 capture_output=True,

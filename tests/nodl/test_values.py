@@ -13,7 +13,7 @@ from ifgen.diagnostics import Source
 from ifgen.nodl import values
 from ifgen.nodl.syntax import reader, scalars
 from ifgen.nodl.values import BadValue
-from ifgen_runtime import parameter_scalars, parameter_yaml
+from ifgen_runtime.parameters import parameter_scalars, parameter_yaml
 
 from tests.runtime.test_parameter_yaml import AWKWARD, VALUES, bits
 

@@ -26,7 +26,7 @@ WRITERS: Final = {
     "ifgen_pytest/fixtures.py": "the folder of a test's bag",
     "ifgen_pytest/recording.py": "the bags of failed tests",
     "ifgen_runtime/bag": "bags",
-    "ifgen_runtime/neighbours.py": "its socket",
+    "ifgen_runtime/domains/neighbours.py": "its socket",
     "ifgen_tools/bag/files.py": "the place of a copied bag",
     "ifgen_tools/beside.py": "a note by which the programs that it starts know of each other",
     "ifgen_tools/graph/commands.py": "the picture that was asked for",

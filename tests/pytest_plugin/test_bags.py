@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
+import importlib
+from pathlib import Path
+
 import pytest
-from ifgen_runtime.bag import Bag
+from ifgen_pytest.recording import Recording
+from ifgen_runtime.bag import Bag, OfferedQoS
+from std_msgs.msg import Float64
 
 from .support import needs_rclpy
+
+# pytester forgets what is imported while it runs, and PyYAML's parser in C cannot be imported twice: reading a bag
+# after that found no QoS.
+importlib.import_module("yaml")
 
 pytest_plugins = ("pytester",)
 
@@ -225,3 +234,25 @@ def test_replay_is_local(pytester: pytest.Pytester) -> None:
     pytester.makepyfile("def test_it(replay):\n    replay('x.mcap')")
     result = pytester.runpytest_subprocess("-rs", "--transport=rclpy")
     result.assert_outcomes(skipped=1)
+
+
+def test_a_topic_is_added_with_its_qos_or_not_at_all(tmp_path: Path) -> None:
+    """A message that comes while another one adds the topic, or after that has failed, does not add it without."""
+
+    class Publisher:
+        msg_type = Float64
+        calls = 0
+
+        @property
+        def qos_profile(self) -> OfferedQoS:
+            self.calls += 1
+            if self.calls == 1:
+                raise RuntimeError("not yet")
+            return OfferedQoS(depth=7)
+
+    recording, publisher = Recording(tmp_path / "a.mcap"), Publisher()
+    for value in (1.0, 2.0):
+        recording._write("/speed", publisher, Float64(data=value), 1)
+    with Bag(recording.end()) as bag:
+        assert [message.data for message in bag["/speed"]] == [2.0]
+        assert [offer.depth for offer in bag.topics["/speed"].qos] == [7]

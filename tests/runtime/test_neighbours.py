@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from ifgen_runtime import neighbours
+from ifgen_runtime.domains import neighbours
 
 HEAD = "  sl  local_address rem_address   st tx_queue rx_queue tr tm->when retrnsmt   uid  timeout inode\n"
 OWN_PORT = 38672  # of a domain by the rule, but for one half of a participant only

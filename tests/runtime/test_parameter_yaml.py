@@ -11,9 +11,9 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from ifgen_runtime import parameter_yaml
-from ifgen_runtime.parameter_scalars import ParameterVariant
-from ifgen_runtime.parameter_yaml import ParameterYamlError
+from ifgen_runtime.parameters import parameter_yaml
+from ifgen_runtime.parameters.parameter_scalars import ParameterVariant
+from ifgen_runtime.parameters.parameter_yaml import ParameterYamlError
 
 AWKWARD = [
     "1e5",

@@ -7,7 +7,7 @@ import signal
 from collections.abc import Callable
 
 import pytest
-from ifgen_runtime import neighbours
+from ifgen_runtime.domains import neighbours
 from ifgen_tools.session import Session
 
 from tests.cli.conftest import cache_folder, clean_environment, ifgen

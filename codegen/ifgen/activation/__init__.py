@@ -90,10 +90,10 @@ def put_on_path(
 
 def reason_against_domain(transport: str) -> str:
     """The reason why no program can start with ROS_DOMAIN_ID on a transport; empty if it can."""
-    domain_id: Any = import_module("ifgen_runtime.domain_id")  # by name: the toolkit imports nothing of it
+    domains: Any = import_module("ifgen_runtime.domains")  # by name: the toolkit imports nothing of it
     text = os.environ.get("ROS_DOMAIN_ID")
     try:
-        number: int = domain_id.of_environment()
+        number: int = domains.of_environment()
     except ValueError:
         return f"ROS_DOMAIN_ID is {text!r}, expected a whole number, such as ROS_DOMAIN_ID=5"
     is_dds = transport == "rclpy" and "zenoh" not in os.environ.get("RMW_IMPLEMENTATION", "")

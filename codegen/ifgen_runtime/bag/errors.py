@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, Final
 
-from ifgen_runtime.printable import printable_lines
+from ifgen_runtime.errors import printable_lines
 
 UNPACKS: Final = "more than ifgen reads of a file of this size without `unlimited`"
 """The end of the reason why a file is not read that unpacks to far more than its size."""

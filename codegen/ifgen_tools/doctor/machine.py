@@ -17,11 +17,11 @@ import lark
 from ifgen import resources
 from ifgen.activation import reason_against_domain
 from ifgen.config import installing
-from ifgen_runtime import neighbours
 from ifgen_runtime.codec import choice
+from ifgen_runtime.domains import neighbours
 from ifgen_runtime.installation import NATIVE
 
-from ifgen_tools.running import elsewhere, other_processes
+from ifgen_tools.running import elsewhere
 
 _TIME_LIMIT = 60.0  # [s] for asking real rclpy
 _LOG_HEAD = re.compile(r"^(\[[^]]*\] ?)+: ")  # level, time and name of who says it
@@ -62,7 +62,7 @@ def _other_processes() -> Component:
     number = _version("eclipse-zenoh")
     if number is None:
         return Component("other processes", "not reached: Zenoh is missing", installing.add_runtime())
-    found, advice = other_processes.look()
+    found, advice = elsewhere.look()
     return Component("other processes", f"{found} (Zenoh {number})", advice)
 
 

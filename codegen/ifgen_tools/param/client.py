@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import ToolError, did_you_mean
-from ifgen_runtime.parameter_scalars import Value
+from ifgen_runtime.parameters.parameter_scalars import Value
 
 if TYPE_CHECKING:
     from rcl_interfaces.msg import Parameter, ParameterDescriptor, ParameterValue, SetParametersResult

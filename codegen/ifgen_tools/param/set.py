@@ -9,8 +9,8 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import ToolError
-from ifgen_runtime import parameter_yaml
-from ifgen_runtime.parameter_scalars import Value
+from ifgen_runtime.parameters import parameter_yaml
+from ifgen_runtime.parameters.parameter_scalars import Value
 
 from ifgen_tools.param.client import BYTES, FIELDS, TYPES, RemoteParameters, SetResult
 from ifgen_tools.param.options import GetOptions, LoadOptions, SetOptions

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 from ifgen.command_kit.tool import ToolError
-from ifgen_runtime import parameter_yaml
+from ifgen_runtime.parameters import parameter_yaml
 
 from ifgen_tools.param.client import (
     BYTES,

@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from ifgen.command_kit.tool import ToolError, did_you_mean
-from ifgen_runtime import serialize, yaml_text
+from ifgen_runtime import serialize
+from ifgen_runtime.convert import yaml_text
 from ifgen_runtime.errors import CodecError
 from ifgen_runtime.field_types import BASIC_TYPES, Basic, Field, Text, fields_of, type_name
 from ifgen_runtime.message import Message

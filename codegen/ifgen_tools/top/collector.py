@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 from ifgen.command_kit.tool import ToolError
-from ifgen_runtime.printable import printable
+from ifgen_runtime.errors import printable
 
 from ifgen_tools import discovery
 from ifgen_tools.param.client import json_value, remote_parameters

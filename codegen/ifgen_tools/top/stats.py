@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from ifgen_runtime.printable import printable
+from ifgen_runtime.errors import printable
 
 from ifgen_tools.top.snapshot import ExecutorRow, SubscriptionRow
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
-from ifgen_runtime import parameter_yaml
+from ifgen_runtime.parameters import parameter_yaml
 from launch._errors import explained
 from launch.conditions import evaluate_condition_expression
 from launch.launch_context import LaunchContext

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
-from ifgen_runtime.parameter_scalars import read_scalar
+from ifgen_runtime.parameters.parameter_scalars import read_scalar
 from launch import frontend
 from launch._errors import LaunchError, Place
 from launch.frontend.entity import MAX_DEPTH, Entity

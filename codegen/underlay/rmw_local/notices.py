@@ -6,7 +6,7 @@ import _thread
 import sys
 from collections.abc import Sequence
 
-from ifgen_runtime.printable import printable
+from ifgen_runtime.errors import printable
 
 from rmw_local import timing
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from ifgen_runtime.parameter_scalars import read_scalar
+from ifgen_runtime.parameters.parameter_scalars import read_scalar
 from rclpy.impl.rcl import names
 from rclpy.impl.rcl.arguments import Arguments, parse_arguments, rclpy_remove_ros_args
 from rclpy.impl.rcl.handle import RCLError, UnknownROSArgsError

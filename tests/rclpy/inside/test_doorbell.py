@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from ifgen_runtime import neighbours
+from ifgen_runtime.domains import neighbours
 from rmw_local.transports import TransportError, doorbell
 from rmw_local.transports.doorbell import Doorbell
 

@@ -15,7 +15,7 @@ from contextlib import suppress
 from importlib import import_module
 from typing import TYPE_CHECKING, ClassVar, Final
 
-from ifgen_runtime.neighbours import BELL
+from ifgen_runtime.domains.neighbours import BELL
 
 from rmw_local.notices import say
 from rmw_local.transports import ConfigurationError, TransportError

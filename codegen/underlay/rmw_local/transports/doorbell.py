@@ -17,7 +17,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ifgen_runtime.neighbours import BELL, COUNT, FOLDER
+from ifgen_runtime.domains.neighbours import BELL, COUNT, FOLDER
 
 from rmw_local.transports import TransportError
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import pytest
 import rclpy
-from ifgen_runtime import neighbours
-from ifgen_runtime.neighbours import Nodes
+from ifgen_runtime.domains import neighbours
+from ifgen_runtime.domains.neighbours import Nodes
 
 from tests.cli.conftest import Run
 

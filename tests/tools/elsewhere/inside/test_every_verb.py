@@ -10,9 +10,9 @@ from pathlib import Path
 import click
 import pytest
 from ifgen.cli.main import commands
-from ifgen_runtime import neighbours
 from ifgen_runtime.bag import Recorder
-from ifgen_runtime.neighbours import Nodes
+from ifgen_runtime.domains import neighbours
+from ifgen_runtime.domains.neighbours import Nodes
 from ifgen_tools import lookout
 from std_msgs.msg import String
 

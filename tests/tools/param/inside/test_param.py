@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 import rclpy
 import yaml
-from ifgen_runtime import parameter_yaml
+from ifgen_runtime.parameters import parameter_yaml
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter

@@ -7,7 +7,7 @@ import threading
 import weakref
 from types import FrameType
 
-from ifgen_runtime import domain_id as domains
+from ifgen_runtime import domains
 from rmw_local.graph import Participant
 from rmw_local.ready import ReadySource
 

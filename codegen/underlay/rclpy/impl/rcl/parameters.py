@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
-from ifgen_runtime.parameter_scalars import ParameterVariant, Value, read_scalar
+from ifgen_runtime.parameters.parameter_scalars import ParameterVariant, Value, read_scalar
 
 from .names import rclpy_get_validation_error_for_namespace, rclpy_get_validation_error_for_node_name
 from .rules import Lexeme, Lexer, RuleError
@@ -118,7 +118,7 @@ def parse_override_rule(rule: str, overrides: ParameterOverrides) -> None:
     if re.fullmatch(r"[\w.+/]+", text, re.ASCII):
         variant.set_scalar(read_scalar(text))
         return
-    from ifgen_runtime import parameter_yaml  # with a YAML parser
+    from ifgen_runtime.parameters import parameter_yaml  # with a YAML parser
 
     try:
         parameter_yaml.read_value(text, variant)
@@ -142,7 +142,7 @@ def _parameter_name(lexer: Lexer) -> str:
 
 def read_file(path: str, overrides: ParameterOverrides) -> None:
     """Read a parameter file into `overrides`; raises RuleError."""
-    from ifgen_runtime import parameter_yaml  # with a YAML parser
+    from ifgen_runtime.parameters import parameter_yaml  # with a YAML parser
 
     try:
         parameter_yaml.read_file(path, overrides.entry)

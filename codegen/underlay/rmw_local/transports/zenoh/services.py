@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any, Final, Protocol
 
 import zenoh
-from ifgen_runtime.printable import printable
+from ifgen_runtime.errors import printable
 from zenoh import ConsolidationMode, Locality, QueryTarget
 
 from rmw_local.transports.background import Background

@@ -12,9 +12,9 @@ from collections.abc import Callable
 from typing import Any, TypeAlias
 
 from ifgen_runtime.arrays import array_of
+from ifgen_runtime.checks.fields import Setter, element_type, setter
 from ifgen_runtime.codec.encoding import type_name
 from ifgen_runtime.copying import deepcopy_of
-from ifgen_runtime.field_checks import Setter, element_type, setter
 from ifgen_runtime.field_types import Basic, Field, fields_of
 from ifgen_runtime.lazy import numpy
 from ifgen_runtime.message import DEFAULT, Message, generated_class, note_field

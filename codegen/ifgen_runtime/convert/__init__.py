@@ -91,7 +91,7 @@ def from_yaml(cls: type[MessageT], text: str | bytes) -> MessageT:
 
     ConversionError too for what is no YAML, and for what is larger than `yaml_text` reads.
     """
-    from ifgen_runtime import yaml_text  # with PyYAML, which messages do without
+    from ifgen_runtime.convert import yaml_text  # with PyYAML, which messages do without
 
     _expect_class(cls, "from_yaml", "text")
     try:

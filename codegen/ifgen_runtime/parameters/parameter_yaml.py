@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import yaml
 
-from ifgen_runtime.parameter_scalars import ParameterVariant, Scalar, Value, read_scalar
+from ifgen_runtime.parameters.parameter_scalars import ParameterVariant, Scalar, Value, read_scalar
 
 __all__ = [
     "PARAMETERS_KEY",
