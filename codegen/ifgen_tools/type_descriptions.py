@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from contextlib import contextmanager
-from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Final, TypeVar
 
@@ -124,8 +123,10 @@ def servers_of(node: Any, name: str) -> list[Question] | None:
     """The servers of a service with its hash; None on a real rclpy, which does not tell."""
     if find_spec("rmw_local") is None:
         return None
+    from rclpy.impl.rcl.graph import service_types  # of our transport only
+
     with node.handle:
-        found = import_module("rclpy.impl.rcl.graph").service_types(node.handle, name)
+        found = service_types(node.handle, name)
     return [Question(*server) for server in dict.fromkeys(found)]
 
 

@@ -117,9 +117,11 @@ def in_one_line(mismatch: Mismatch) -> str:
         )
     return (
         f"{mismatch.kind} '{mismatch.name}': {theirs.node} ({theirs.role}) has another definition of "
-        f"{mismatch.type_name} than {mine.node} ({mine.role}): {_hash(theirs)}, not {_hash(mine)}"
+        f"{mismatch.type_name} than {mine.node} ({mine.role}): "
+        f"{short(theirs.type_hash)}..., not {short(mine.type_hash)}..."
     )
 
 
-def _hash(side: Side) -> str:
-    return f"{side.type_hash[:_SHOWN]}..."
+def short(type_hash: str) -> str:
+    """As much of a hash as tells it from others."""
+    return type_hash[:_SHOWN]

@@ -110,8 +110,11 @@ class Reporter:
 
         text = report(_mismatch(meeting, theirs), self._limit, remarks)
         logger = endpoint.node.get_logger()
-        if text:
-            (logger.info if meeting.policy is OnTypeMismatch.ADAPT else logger.warning)(text)
+        # Two lines: rclpy refuses another severity from the same one.
+        if text and meeting.policy is OnTypeMismatch.ADAPT:
+            logger.info(text)
+        elif text:
+            logger.warning(text)
 
     def complain(self, error: Exception) -> None:
         """Say once that something has failed, to whoever looks for it."""

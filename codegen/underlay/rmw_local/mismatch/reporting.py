@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ifgen_runtime.mismatch import reporting
-from ifgen_runtime.mismatch.reporting import Mismatch, Side, definition_of
+from ifgen_runtime.mismatch.reporting import Mismatch, Side, definition_of, short
 
 from rmw_local import report as log
 from rmw_local.message import type_name
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from rmw_local.mismatch.encounter import Encounter, Party
 
 _ACTION = "/_action/"
-_SHOWN = len("RIHS01_") + 16
 _SUFFIXES = ("SendGoal", "GetResult", "FeedbackMessage")  # of the names of parts
 _PARTS = ("SendGoalService", "GetResultService", "FeedbackMessage")
 
@@ -79,7 +78,7 @@ def _cannot_adapt(mismatch: Mismatch) -> bool:
 def _missing(mismatch: Mismatch, said: str) -> str:
     """The reason why a node refuses that is to adapt; `said` may have the command that helps."""
     adapter = "adapter" if mismatch.kind == "topic" else "adapter with `downgrade`"
-    command = f"ifgen adapt {mismatch.type_name} --from {mismatch.theirs.type_hash[:_SHOWN]}"
+    command = f"ifgen adapt {mismatch.type_name} --from {short(mismatch.theirs.type_hash)}"
     hint = "" if command in said else f": `{command}` writes one"
     return f"\n{mismatch.mine.node} is to adapt, but no {adapter} was registered when the two met{hint}"
 
