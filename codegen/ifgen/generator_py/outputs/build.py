@@ -35,7 +35,6 @@ from ifgen.definition.types import (
 )
 from ifgen.generator_py.messages.fields import zero_literal
 from ifgen.generator_py.names import interface_name
-from ifgen.generator_py.nodes.documents import yaml_value
 from ifgen.generator_py.outputs.view import (
     AnnotationView,
     Base,
@@ -64,6 +63,7 @@ from ifgen.nodl.model import (
 )
 from ifgen.nodl.names import expanded
 from ifgen.nodl.values import spelled as spelled_type
+from ifgen.nodl.yaml_lines import yaml_value
 
 _BASES: Final[Mapping[str, Base]] = {
     "boolean": "bool",
