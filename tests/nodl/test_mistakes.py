@@ -31,6 +31,16 @@ def options(text: str, rest: str = "") -> str:
     return f"nodl_version: 2\ncodegen:\n  ifgen:\n    {text}\n{rest}"
 
 
+STRUCTS = [
+    ("invalid-option", "structs: {g: {each: ⟦joints⟧, of: {p: {type: int}}}}", "string_array with a default"),
+    ("missing-key", "structs: {g: ⟦{of: {p: {type: int}}}⟧}", "`each`"),
+    ("missing-key", "structs: {g: ⟦{each: [a]}⟧}", "`of`"),
+    ("unknown-key", "structs: {g: {each: [a], of: {}, ⟦ofs⟧: 1}}", "did you mean `of`"),
+    ("unknown-key", "structs: {g: {each: [a], of: {p: {type: int, ⟦unit⟧: m}}}}", "`unit`"),
+    ("invalid-name", "structs: {g: {each: [⟦a-b⟧], of: {p: {type: int}}}}", "`a-b`"),
+    ("invalid-name", "structs: {g: {each: [⟦__a⟧], of: {p: {type: int}}}}", "private in Python"),
+    ("duplicate-parameter", "structs: {g: {each: [a, ⟦a⟧], of: {p: {type: int}}}}", "`g.a.p`"),
+]
 A_DOUBLE = "parameters:\n  period: {type: double}\n  count: {type: int}\n"
 
 SYNTAX = [
@@ -251,6 +261,7 @@ def as_validator(rule: str, type_: str, validators: str, said: str) -> tuple[str
 
 
 ALL = [*SYNTAX, *DOCUMENT, *ENDPOINTS, *PARAMETERS, *(as_validator(*case) for case in VALIDATORS), *OPTIONS]
+ALL += [(rule, options(text), said) for rule, text, said in STRUCTS]
 
 
 @pytest.mark.parametrize(

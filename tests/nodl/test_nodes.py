@@ -375,3 +375,14 @@ def test_single_files_and_folders(tmp_path: Path) -> None:
     found = search.find_node("demo", "b")
     assert found is not None
     assert found.path.name == "b.nodl.json"
+
+
+def test_maps_of_structs_are_expanded(load_nodes: Load) -> None:
+    node = load_nodes(
+        "nodl_version: 2\ncodegen: {ifgen: {structs: {gains: {each: joints, of: {p: {type: double}}}, "
+        "limits: {each: [hip], of: {max: {type: int, default_value: 3}}}}}}\n"
+        "parameters: {joints: {type: string_array, default_value: [hip, knee]}}\n"
+    ).node
+    expected = ["joints", "gains.hip.p", "gains.knee.p", "limits.hip.max"]
+    assert [parameter.name for parameter in node.parameters] == expected
+    assert node.parameters[3].default == 3

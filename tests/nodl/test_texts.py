@@ -13,8 +13,9 @@ from typing import Any
 
 import pytest
 import yaml
-from ifgen.generator_py.nodes.documents import config_lines, description_lines
+from ifgen.generator_py.nodes.parameters import config_lines
 from ifgen.nodl.model import NodeDescription, Parameter, ParameterType
+from ifgen.nodl.yaml_lines import description_lines
 from ifgen_tools.nodl.document import as_yaml, document_of
 from ifgen_tools.nodl.parameters import RunningParameter
 

@@ -45,10 +45,12 @@ def check(
     and CMakeLists.txt, and writes `pkg/Type` for `pkg::Type`.
 
     PATH is a package, a folder of packages, or one .msg, .srv, .action, .idl or .nodl.yaml file. The default
-    is the paths in [tool.ifgen] of pyproject.toml.
+    is the paths in [tool.ifgen] of pyproject.toml. A parameter file (.yaml) is compared with what the nodes
+    of the other paths, or of the default, declare.
     """
-    from ifgen.pipeline.inspection import inspect
+    from ifgen.pipeline.inspection import inspect, split_parameter_files
 
+    paths, parameter_files = split_parameter_files(paths)
     settings = settle(paths, None, include, strict=strict).with_paths()
     while True:
         findings = inspect(
@@ -57,6 +59,7 @@ def check(
             output=settings.output,
             ros_distro=settings.custom.ros_distro,
             exclude=settings.exclude,
+            parameter_files=parameter_files,
         )
         told = settings.policy.told(findings.diagnostics)
         if diff or not fix or not _fix(told):

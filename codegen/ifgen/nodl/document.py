@@ -88,11 +88,14 @@ def read(source: Source, search: SearchPath, problems: FileProblems) -> Document
         if not isinstance(value, MapNode):
             problems.error(tree.wrong_value, value, f"`codegen.{key.name}`", "a map")
     own = codegen.get("ifgen") if codegen else None
+    declared = parameters.read(root, problems)
+    if isinstance(own, MapNode):
+        declared += parameters.expanded(own, declared, problems)
     return Document(
         source,
         tree.text(root, "description", problems) or "",
         tuple(_includes(root, problems)),
-        tuple(parameters.read(root, problems)),
+        tuple(declared),
         tuple(e for category in Category for e in endpoints.read(root, category, search, problems)),
         own if isinstance(own, MapNode) else None,
         root,

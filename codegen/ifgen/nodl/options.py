@@ -68,6 +68,17 @@ class TimerOptions(BaseModel):
     publishes: list[str] = Field(default=[], description="Publishers that it sends at this rate.")
 
 
+class StructOptions(BaseModel):
+    """A map of structs: the parameters `of` each, for `each` name."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    each: list[str] | str = Field(
+        description="The names, or the parameter (a string_array) whose default has them."
+    )
+    of: dict[str, dict[str, Any]] = Field(description="The parameters of each, as under `parameters`.")
+
+
 class Options(BaseModel):
     """The keys below `codegen.ifgen`."""
 
@@ -86,6 +97,9 @@ class Options(BaseModel):
         default=None, description="What the node does if another one has another definition of a type."
     )
     timers: list[TimerOptions] = Field(default=[], description="The timers of the node.")
+    structs: dict[str, StructOptions] = Field(
+        default={}, description="Maps of structs, which become parameters GROUP.NAME.FIELD."
+    )
     validators: dict[str, str] = Field(
         default={}, description="For each custom validator (ns::name) the dotted path of a Python function."
     )
@@ -115,6 +129,8 @@ def applied(node: NodeDescription, tree: MapNode, problems: FileProblems) -> Nod
         for details in error.errors(include_url=False):
             problems.error(_diagnostic, tree, cast("dict[str, Any]", details))
             wrong.add(details["loc"])
+        if any(location[0] == "structs" for location in wrong):
+            wrong.add(("structs",))  # they have been expanded, as far as they can be
         options = Options.model_validate(_without(tree, wrong))
     if options.node_class is not None and not _is_identifier(options.node_class):
         problems.error(_no_identifier, _place(tree, "node_class"), "node_class", options.node_class)
@@ -235,11 +251,13 @@ def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
     location: Location = error["loc"]
     node, key = find(root, location)
     shown_location = [str(step) for step in location if isinstance(step, str)]
-    what = "a timer" if location[:1] == ("timers",) and len(location) > 1 else "codegen.ifgen"
+    inner = {"timers": "a timer", "structs": "a map of structs"} if len(location) > 1 else {}
+    what = inner.get(str(location[0]), "codegen.ifgen")
     name = f"`{'.'.join(['codegen.ifgen', *shown_location])}`"
     match error["type"]:
         case "extra_forbidden" if key is not None:
-            model = TimerOptions if what == "a timer" else Options
+            models: dict[str, type[BaseModel]] = {"a timer": TimerOptions, "a map of structs": StructOptions}
+            model = models.get(what, Options)
             return unknown_key(key, what, model.model_fields)
         case "missing":
             return missing_key(str(location[len(location) - 1]), what, node.span)

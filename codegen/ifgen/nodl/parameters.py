@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 from ifgen.definition.explain import did_you_mean
@@ -11,7 +12,7 @@ from ifgen.nodl import names, validators, values
 from ifgen.nodl.endpoints import invalid_name
 from ifgen.nodl.model import Parameter, ParameterType, ParameterValue, Validator
 from ifgen.nodl.syntax import tree
-from ifgen.nodl.syntax.tree import Key, MapNode, Node, shown, yaml_surprise
+from ifgen.nodl.syntax.tree import Key, ListNode, MapNode, Node, ScalarNode, shown, yaml_surprise
 from ifgen.nodl.values import ARRAYS, FIXED, SCALARS, BadValue, spelled
 
 _FOREIGN_TYPES: Final = {
@@ -44,6 +45,50 @@ def read(document: MapNode, problems: FileProblems) -> list[Parameter]:
     node = tree.entries(document, "parameters", "a map from names to parameters", problems)
     found = (_parameter(key, value, problems) for key, value in (node.entries if node else ()))
     return [parameter for parameter in found if parameter is not None]
+
+
+def expanded(options: MapNode, declared: Sequence[Parameter], problems: FileProblems) -> Iterator[Parameter]:
+    """The parameters of `codegen.ifgen.structs`: for each name of a map of structs, those of the struct.
+
+    The shapes of the maps are checked with the other options.
+    """
+    structs = options.get("structs")
+    for group, struct in structs.entries if isinstance(structs, MapNode) else ():
+        fields, each = (struct.get("of"), struct.get("each")) if isinstance(struct, MapNode) else (None, None)
+        if not isinstance(fields, MapNode) or each is None:
+            continue
+        for name, span in _names_of(each, declared, problems):
+            for key, node in fields.entries:
+                whole = Key(f"{group.name}.{name}.{key.name}", span or key.span)
+                parameter = _parameter(whole, node, problems)
+                if parameter is not None:
+                    yield parameter
+
+
+def _names_of(
+    each: Node, declared: Sequence[Parameter], problems: FileProblems
+) -> list[tuple[str, Span | None]]:
+    """The names that a map of structs has: a list, or the default of a parameter."""
+    if isinstance(each, ListNode):
+        texts = ((item.value, item.span) for item in each.items if isinstance(item, ScalarNode))
+        return [(text, span) for text, span in texts if isinstance(text, str)]
+    text = each.value if isinstance(each, ScalarNode) else None
+    found = next((parameter for parameter in declared if parameter.name == text), None)
+    if found is None or found.type.base != "string" or not isinstance(found.default, tuple):
+        if isinstance(text, str):
+            problems.error(_no_names, text, each.span)
+        return []
+    return [(str(name), each.span) for name in found.default]
+
+
+def _no_names(name: str, span: Span) -> Diagnostic:
+    """Say that a parameter does not say which structs there are."""
+    return Diagnostic(
+        "invalid-option",
+        f"`{shorten(name)}` is no parameter of type string_array with a default in this document",
+        Label(span),
+        help="name one, whose default has the names, or write a list of names",
+    )
 
 
 def _parameter(key: Key, node: Node, problems: FileProblems) -> Parameter | None:

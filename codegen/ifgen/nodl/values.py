@@ -55,10 +55,16 @@ def spelled(type_: ParameterType) -> str:
     return f"{type_.base}{'_array' if type_.array else ''}{size}"
 
 
-def value(node: Node, type_: ParameterType) -> ParameterValue | BadValue:
+def file_value(node: Node, type_: ParameterType) -> ParameterValue | BadValue:
+    """The value in a parameter file: as `value`, but an integer is no double, which rclpy refuses, too."""
+    return value(node, type_, of_file=True)
+
+
+def value(node: Node, type_: ParameterType, *, of_file: bool = False) -> ParameterValue | BadValue:
     """The value of a type that a node says, or the part of it that is not of the type."""
+    read_scalar_as = _scalar_of_file if of_file else scalar
     if not type_.array:
-        found = scalar(node, type_.base)
+        found = read_scalar_as(node, type_.base)
         if isinstance(found, str) and type_.fixed_size is not None and len(found) > type_.fixed_size:
             return BadValue(node, f"a text of at most {type_.fixed_size} characters")
         return found
@@ -68,7 +74,7 @@ def value(node: Node, type_: ParameterType) -> ParameterValue | BadValue:
         return BadValue(node, f"a list of at most {type_.fixed_size} values")
     elements: list[ScalarValue] = []
     for item in node.items:
-        element = scalar(item, type_.base)
+        element = read_scalar_as(item, type_.base)
         if isinstance(element, BadValue):
             return element
         elements.append(element)
@@ -80,6 +86,14 @@ def read(node: Node) -> Node:
     if not isinstance(node, ScalarNode) or node.written is None or node.value is None:
         return node
     return ScalarNode(read_scalar(node.written), node.span, node.plain)
+
+
+def _scalar_of_file(node: Node, base: str) -> ScalarValue | BadValue:
+    read_node = read(node)
+    is_integer = isinstance(read_node, ScalarNode) and isinstance(read_node.value, int)
+    if base == "double" and is_integer:
+        return BadValue(node, "a number with a decimal point")
+    return _of_base(read_node, base)
 
 
 def scalar(node: Node, base: str) -> ScalarValue | BadValue:

@@ -30,17 +30,28 @@ class Findings:
     nodes: int = 0
 
 
+def split_parameter_files(paths: Sequence[Path]) -> tuple[tuple[Path, ...], tuple[Path, ...]]:
+    """The paths of packages and definitions, and those of parameter files."""
+    if not any(path.suffix in {".yaml", ".yml"} for path in paths):
+        return tuple(paths), ()
+    from ifgen.nodl.parameter_files import is_parameter_file
+
+    files = tuple(path for path in paths if is_parameter_file(path))
+    return tuple(path for path in paths if path not in files), files
+
+
 def inspect(
     *paths: Path | str,
     include: Sequence[Path | str] = (),
     output: Path | None = None,
     ros_distro: str | None = None,
     exclude: Sequence[str] = (),
+    parameter_files: Sequence[Path] = (),
 ) -> Findings:
     """The diagnostics about the interfaces and nodes at `paths`, and about what they need of other packages.
 
     In `output`, if it is given, the user's modules of the nodes are looked at too. What a `ros_distro` of
-    ROS 2 refuses is an error.
+    ROS 2 refuses is an error. Of `parameter_files`, what the nodes do not declare so is one.
     """
     from ifgen.definition.problems import one_for_each_cause
     from ifgen.definition.resolve import resolve
@@ -57,6 +68,7 @@ def inspect(
         return Findings(error.diagnostics)
     found: list[Diagnostic] = []
     nodes = 0
+    loaded: Nodes | None = None
     try:
         found += resolve((package for package in packages if package.has_interfaces), search).warnings
     except InputError as error:
@@ -71,6 +83,11 @@ def inspect(
             nodes = sum(len(package.nodes) for package in loaded.packages)
         except InputError as error:
             found += error.diagnostics
+    if parameter_files and not (any(package.nodes for package in packages) and loaded is None):
+        from ifgen.nodl.parameter_files import check
+
+        described = [node for package in (loaded.packages if loaded else ()) for node in package.nodes]
+        found += check(parameter_files, described)
     if excluded:
         from ifgen.pipeline.resolution import about_the_rest
 

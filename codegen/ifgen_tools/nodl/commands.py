@@ -54,6 +54,13 @@ def nodl() -> None:
     "-o", "--output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file, .yaml or .json."
 )
 @click.option("--force", is_flag=True, help="Replace FILE if it exists.")
+@click.option(
+    "--from",
+    "message",
+    metavar="MESSAGE",
+    type=EXISTING_FILE,
+    help="Describe the node in this file: one rosgraph_msgs/msg/Node in YAML.",
+)
 @transport_option
 @click.pass_context
 def describe(
@@ -61,6 +68,7 @@ def describe(
     node: str | None,
     output: Path | None,
     force: bool,
+    message: Path | None,
     transport: TransportChoice,
 ) -> int:
     """Write the description of a running node.
@@ -76,12 +84,22 @@ def describe(
     if output is not None and output.exists() and not force:
         raise UsageError([Diagnostic("existing-file", f"{output} exists", help="replace it with --force")])
     words: list[str] = context.meta[_PROGRAMS]
-    with session_beside(run.split(words) if words else [], transport) as session:
-        view = session.graph().of_authors()
-        chosen = choose(view.nodes, node)
-        if chosen is None:
-            raise UsageError([_unclear(view.nodes, node)])
-        document, omitted = document_of(chosen, view.endpoints, parameters_of(session, chosen))
+    if message is not None:
+        from ifgen_tools.graph.reading import View
+        from ifgen_tools.nodl.rosgraph import read_node
+
+        chosen, ends, parameters = read_node(message)
+        document, omitted = document_of(
+            chosen, View((chosen,), tuple(ends)).of_authors().endpoints, parameters
+        )
+    else:
+        with session_beside(run.split(words) if words else [], transport) as session:
+            view = session.graph().of_authors()
+            found = choose(view.nodes, node)
+            if found is None:
+                raise UsageError([_unclear(view.nodes, node)])
+            chosen = found
+            document, omitted = document_of(chosen, view.endpoints, parameters_of(session, chosen))
     write = as_json if output is not None and output.suffix == ".json" else as_yaml
     text = write(document, omitted)
     if output is None:

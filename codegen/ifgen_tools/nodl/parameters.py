@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _PATIENCE: Final = 5.0
 """Seconds in which a node has to answer each question."""
 
-_TYPES: Final[Mapping[int, str]] = {
+TYPES: Final[Mapping[int, str]] = {
     1: "bool",
     2: "int",
     3: "double",
@@ -57,11 +57,11 @@ def parameters_of(session: Session, node: str) -> tuple[RunningParameter, ...] |
 
 def running_parameter(descriptor: ParameterDescriptor, value: ParameterValue | None) -> RunningParameter:
     """A parameter from its descriptor and its value, None for one without a value."""
-    type_ = _TYPES.get(value.type) if value else None
+    type_ = TYPES.get(value.type) if value else None
     limits: list[Any] = [*descriptor.floating_point_range, *descriptor.integer_range]
     return RunningParameter(
         name=descriptor.name,
-        type=type_ or _TYPES.get(descriptor.type, "none"),
+        type=type_ or TYPES.get(descriptor.type, "none"),
         value=json_value(value) if value else None,
         description=descriptor.description,
         read_only=descriptor.read_only,

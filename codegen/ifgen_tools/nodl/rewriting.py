@@ -11,11 +11,11 @@ from typing import Any
 import yaml
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, InputError, Label
-from ifgen.generator_py.nodes.documents import description_lines
 from ifgen.nodl import document
 from ifgen.nodl.load import Loaded
 from ifgen.nodl.model import Category, Interface
 from ifgen.nodl.syntax.tree import ListNode, MapNode, ScalarNode, source_text
+from ifgen.nodl.yaml_lines import description_lines
 from ifgen.reading.packages import NodeFile
 
 _LOCAL = "local://"

@@ -152,3 +152,67 @@ def test_what_cannot_be_migrated(
     assert nodl("migrate", "robot.nodl.xml") == 1
     captured = capsys.readouterr()
     assert "robot.nodl.xml:" in captured.out + captured.err
+
+
+def seen_qos(history: int, depth: int) -> dict[str, object]:
+    never = {"sec": 2147483647, "nanosec": 4294967295}
+    return {
+        **{"depth": depth, "deadline": {"sec": 1, "nanosec": 500}, "lifespan": never, "history": history},
+        **{"reliability": 2, "durability": 1, "liveliness": 1, "liveliness_lease_duration": never},
+    }
+
+
+def seen_type(name: str) -> dict[str, object]:
+    return {"name": name, "hash": {"version": 1, "value": [0] * 32}}
+
+
+MESSAGE = {
+    "name": "/robot/arm",
+    "parameters": [
+        {
+            "name": "gain",
+            "type": 3,
+            "floating_point_range": [{"from_value": 0.0, "to_value": 2.0, "step": 0.0}],
+        },
+        {"name": "use_sim_time", "type": 1},
+    ],
+    "parameter_values": [{"type": 3, "double_value": 1.5}, {"type": 1, "bool_value": False}],
+    "publishers": [
+        {"name": "/robot/arm/out", "type": seen_type("std_msgs/msg/String"), "qos": seen_qos(1, 5)},
+        {"name": "/rosout", "type": seen_type("rcl_interfaces/msg/Log"), "qos": seen_qos(1, 1)},
+    ],
+    "subscriptions": [{"name": "/in", "type": seen_type("std_msgs/msg/String"), "qos": seen_qos(3, 0)}],
+    "service_servers": [{"name": "/robot/arm/go", "request_type": seen_type("std_srvs/srv/Trigger_Request")}],
+    "action_servers": [
+        {
+            "name": "/a",
+            "send_goal": {"request_type": seen_type("test_msgs/action/Fibonacci_SendGoal_Request")},
+        },
+        {"name": "/b", "request_type": seen_type("test_msgs/action/Fibonacci_SendGoal_Request")},
+    ],
+}
+
+
+def test_describe_a_message(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As `ros2 topic echo` prints it, in both forms that actions have had."""
+    (folder / "seen.yaml").write_text(f"{yaml.safe_dump(MESSAGE)}---\n")
+    assert nodl("describe", "--from", "seen.yaml") == 0
+    found = yaml.safe_load(capsys.readouterr().out)
+    assert found["parameters"] == {
+        "gain": {"type": "double", "default_value": 1.5, "validation": {"bounds": [0.0, 2.0]}}
+    }
+    latched = {"reliability": "BEST_EFFORT", "durability": "TRANSIENT_LOCAL", "deadline_ns": 1_000_000_500}
+    assert [(end["name"], end["qos"]) for end in found["publishers"]] == [
+        ("~/out", {"history": "KEEP_LAST", "depth": 5, **latched})
+    ]
+    assert found["subscriptions"][0]["qos"] == {"history": "SYSTEM_DEFAULT", **latched}
+    assert found["service_servers"] == [{"name": "~/go", "type": "std_srvs/srv/Trigger"}]
+    assert {end["type"] for end in found["action_servers"]} == {"test_msgs/action/Fibonacci"}
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "name: /a\npublishers: [5]\n", "a: [", "name: /a\n---\nname: /b\n"]
+)
+def test_what_is_no_message(folder: Path, text: str) -> None:
+    (folder / "seen.yaml").write_text(text)
+    assert nodl("describe", "--from", "seen.yaml") == 2

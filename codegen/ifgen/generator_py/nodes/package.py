@@ -13,10 +13,10 @@ from ifgen.definition.references import references
 from ifgen.generator_py.artifact import Artifact
 from ifgen.generator_py.nodes.classes import base_module, user_module
 from ifgen.generator_py.nodes.context import ChecksModule, NodeFiles, NodePackageFiles
-from ifgen.generator_py.nodes.documents import config_lines, description_lines
-from ifgen.generator_py.nodes.parameters import annotation, declared, parameters_module
+from ifgen.generator_py.nodes.parameters import annotation, config_lines, declared, parameters_module
 from ifgen.generator_py.text import docstring, literal, quoted
 from ifgen.nodl.model import NodeDescription, NodePackage, PackageMetadata, Parameter, Validator
+from ifgen.nodl.yaml_lines import description_lines
 from ifgen.reading.package_xml import Dependency
 
 

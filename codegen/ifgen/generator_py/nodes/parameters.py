@@ -1,4 +1,4 @@
-"""From the parameters of a node to a module with a frozen dataclass of them and what checks them."""
+"""From the parameters of a node to a frozen dataclass of them, what checks them, and a parameter file."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from ifgen.generator_py.nodes.context import (
 from ifgen.generator_py.nodes.imports import Imports
 from ifgen.generator_py.text import are_long, call, docstring, literal, quoted
 from ifgen.nodl.model import NodeDescription, Parameter, ParameterType, Validator
+from ifgen.nodl.syntax.scalars import comment
+from ifgen.nodl.yaml_lines import yaml_key, yaml_value
 
 KINDS: Final = {"bool": "BOOL", "int": "INTEGER", "double": "DOUBLE", "string": "STRING", "byte": "BYTE"}
 """The `Parameter.Type` of each base, without `_ARRAY`."""
@@ -236,3 +238,27 @@ def _rule(validator: Validator, parameter: Parameter) -> tuple[str, str]:
 def _counted(size: int, parameter: Parameter) -> str:
     noun = "element" if parameter.type.array else "character"
     return f"{size} {noun}{'' if size == 1 else 's'}"
+
+
+def config_lines(node: NodeDescription) -> Iterator[str]:
+    """The lines of a parameter file: every default, as a comment where no file can give it."""
+    parameters = declared(node)
+    if not any(map(_is_held_by_files, parameters)):
+        yield "    {}"
+    for parameter in parameters:
+        notes = [parameter.description, *(text[:1].upper() + text[1:] for text in constraints(parameter))]
+        for note in filter(None, notes):
+            yield from (f"    # {line}".rstrip() for line in comment(note))
+        if parameter.default is None:
+            yield f"    # {parameter.name}: must be given"
+        elif not _is_held_by_files(parameter):
+            kind = "bytes" if parameter.type.base == "byte" else "empty arrays"
+            value = yaml_value(parameter.default)
+            yield f"    # {parameter.name}: {value}; ROS reads no {kind} from a parameter file"
+        else:
+            yield f"    {yaml_key(parameter.name)}: {yaml_value(parameter.default)}"
+
+
+def _is_held_by_files(parameter: Parameter) -> bool:
+    """Whether a parameter file can hold the default, if there is one."""
+    return parameter.default not in (None, ()) and parameter.type.base != "byte"

@@ -1,4 +1,4 @@
-"""YAML of a node: its description as one document without includes, and its parameter file."""
+"""YAML of a document: what a description says, as every reader of YAML understands it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Final
 
-from ifgen.generator_py.nodes.parameters import constraints, declared
 from ifgen.nodl.model import (
     Category,
     Endpoint,
@@ -17,7 +16,7 @@ from ifgen.nodl.model import (
     QosProfile,
     Validator,
 )
-from ifgen.nodl.syntax.scalars import comment, quoted
+from ifgen.nodl.syntax.scalars import quoted
 from ifgen.nodl.validators import is_custom
 from ifgen.nodl.values import spelled
 
@@ -25,7 +24,7 @@ _WORDS: Final = frozenset({"y", "n", "yes", "no", "on", "off", "true", "false", 
 
 
 def description_lines(node: NodeDescription) -> Iterator[str]:
-    """The document after `nodl_version`, for the ament index: what it is composed of in one place.
+    """The document after `nodl_version`, for the ament index: its parts in one place.
 
     What it says to tools other than ifgen stays, and so do includes of documents whose code exists: whoever
     includes this one generates nothing for those.
@@ -34,7 +33,7 @@ def description_lines(node: NodeDescription) -> Iterator[str]:
         yield f"description: {quoted(node.description)}"
     if node.codegen:
         yield "codegen:"
-        yield from (f"  {_key(tool)}: {options}" for tool, options in node.codegen)
+        yield from (f"  {yaml_key(tool)}: {options}" for tool, options in node.codegen)
     if node.references:
         yield "include:"
         yield from (f"  - ref: {reference}" for reference in node.references)
@@ -51,32 +50,8 @@ def description_lines(node: NodeDescription) -> Iterator[str]:
                 yield from _endpoint(endpoint)
 
 
-def config_lines(node: NodeDescription) -> Iterator[str]:
-    """Every parameter with its default; as a comment where it must be given, or cannot be given in a file."""
-    parameters = declared(node)
-    if not any(map(_is_held_by_files, parameters)):
-        yield "    {}"
-    for parameter in parameters:
-        notes = [parameter.description, *(text[:1].upper() + text[1:] for text in constraints(parameter))]
-        for note in filter(None, notes):
-            yield from (f"    # {line}".rstrip() for line in comment(note))
-        if parameter.default is None:
-            yield f"    # {parameter.name}: must be given"
-        elif not _is_held_by_files(parameter):
-            kind = "bytes" if parameter.type.base == "byte" else "empty arrays"
-            value = yaml_value(parameter.default)
-            yield f"    # {parameter.name}: {value}; ROS reads no {kind} from a parameter file"
-        else:
-            yield f"    {_key(parameter.name)}: {yaml_value(parameter.default)}"
-
-
-def _is_held_by_files(parameter: Parameter) -> bool:
-    """Whether a parameter file can hold the default, if there is one."""
-    return parameter.default not in (None, ()) and parameter.type.base != "byte"
-
-
 def _parameter(parameter: Parameter) -> Iterator[str]:
-    yield f"  {_key(parameter.name)}:"
+    yield f"  {yaml_key(parameter.name)}:"
     yield f"    type: {spelled(parameter.type)}"
     if parameter.default is not None:
         yield f"    default_value: {yaml_value(parameter.default)}"
@@ -93,7 +68,7 @@ def _parameter(parameter: Parameter) -> Iterator[str]:
             yield f"      {validator.name}{mark}: {_arguments(validator)}"
 
 
-def _key(name: str) -> str:
+def yaml_key(name: str) -> str:
     """A name as a key: YAML 1.1 reads some words as something else."""
     return quoted(name) if name.lower() in _WORDS else name
 
