@@ -103,8 +103,8 @@ def test_mistakes(ifgen: Run, counter: Counter) -> None:
     assert (done.code, "names no action" in done.err) == (1, True)
 
 
-def test_nobody_serves_it(ifgen: Run, counter: Counter) -> None:
-    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+@pytest.mark.usefixtures("counter", "interrupted_wait")
+def test_nobody_serves_it(ifgen: Run) -> None:
     done = ifgen("action", "send_goal", "/coun", TYPE)
     assert done.code == 2
     assert "waiting for the action '/coun'... did you mean '/count'?" in done.err

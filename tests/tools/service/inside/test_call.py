@@ -96,8 +96,8 @@ def test_wrong_types(ifgen: Run, server: Node) -> None:
     assert (done.code, "names no service" in done.err) == (1, True)
 
 
-def test_nobody_serves_it(ifgen: Run, server: Node) -> None:
-    threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+@pytest.mark.usefixtures("server", "interrupted_wait")
+def test_nobody_serves_it(ifgen: Run) -> None:
     done = ifgen("service", "call", "/ad", ADD)
     assert done.code == 2
     assert done.err == "waiting for the service '/ad'... did you mean '/add'?\n"
