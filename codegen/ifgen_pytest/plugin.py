@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from ifgen_pytest import transport
+from ifgen_pytest import launch_tests, transport
 from ifgen_pytest.comparison import explain
 from ifgen_pytest.domains import RANGE
 from ifgen_pytest.fixtures import (
@@ -25,11 +25,13 @@ from ifgen_pytest.fixtures import (
     ros_node,
     ros_virtual_clock,
 )
+from ifgen_pytest.launch_tests import pytest_pycollect_makemodule
 from ifgen_pytest.strict import StrictCheck
 
 __all__ = [
     "bag",
     "ifgen_generator",
+    "pytest_pycollect_makemodule",
     "record",
     "replay",
     "ros_collect",
@@ -79,10 +81,12 @@ def pytest_load_initial_conftests(
             cause.add_note(f"ifgen: {advice}")
         raise
     transport.add_option(parser)
+    launch_tests.add_option(parser)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Declare the marker."""
+    """Declare the markers."""
+    config.addinivalue_line("markers", "launch_test: on generate_test_description, for tests of launches")
     config.addinivalue_line(
         "markers",
         "ros_strict: fail on exceptions in callbacks, leaked nodes, undelivered messages, incompatible QoS "

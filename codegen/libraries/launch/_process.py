@@ -79,9 +79,12 @@ class Process:
             for number, stream in enumerate(streams, 1)
         ]
         self._masters = masters
-        for reader in self._readers:
-            reader.start()
-        threading.Thread(target=self._wait, args=(on_end,), daemon=True).start()
+        self._waiter = threading.Thread(target=self._wait, args=(on_end,), daemon=True)
+
+    def begin(self) -> None:
+        """Let its output and its end come, now that its start is announced."""
+        for thread in (*self._readers, self._waiter):
+            thread.start()
 
     def signal(self, number: int) -> None:
         """Send a signal to it and to what it has started."""
@@ -209,6 +212,7 @@ class Supervision:
         for action in self.actions:
             action.process_details = self._details(action)
             self._host.emit(ProcessStarted(**action.process_details))
+        self._process.begin()
 
     def signal(self, number: int) -> None:
         """Send a signal to the process, if it runs."""

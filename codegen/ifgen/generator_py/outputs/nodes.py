@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ifgen import model
-from ifgen.generator_py.nodes.documents import yaml_value
+from ifgen.nodl.yaml_lines import yaml_value
 from ifgen.nodl.model import (
     Endpoint,
     NodeDescription,
