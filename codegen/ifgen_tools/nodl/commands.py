@@ -85,7 +85,7 @@ def describe(
         raise UsageError([Diagnostic("existing-file", f"{output} exists", help="replace it with --force")])
     words: list[str] = context.meta[_PROGRAMS]
     if message is not None:
-        from ifgen_tools.graph.reading import View
+        from ifgen_tools.ros_graph import View
         from ifgen_tools.nodl.rosgraph import read_node
 
         chosen, ends, parameters = read_node(message)

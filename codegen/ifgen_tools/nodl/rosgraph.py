@@ -15,7 +15,7 @@ from ifgen.diagnostics import Diagnostic, Label, Span, UsageError
 from ifgen.nodl.model import Category, QosProfile
 from ifgen.reading.storage import read_source
 
-from ifgen_tools.graph.reading import Endpoint
+from ifgen_tools.ros_graph import Endpoint
 from ifgen_tools.nodl.parameters import TYPES, RunningParameter
 from ifgen_tools.param.client import FIELDS
 

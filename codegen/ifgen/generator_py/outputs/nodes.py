@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from ifgen import model
-from ifgen.nodl.yaml_lines import yaml_value
 from ifgen.nodl.model import (
     Endpoint,
     NodeDescription,
@@ -14,6 +13,7 @@ from ifgen.nodl.model import (
 )
 from ifgen.nodl.names import expanded
 from ifgen.nodl.values import spelled as spelled_type
+from ifgen.nodl.yaml_lines import yaml_value
 
 
 def node_model(node: NodeDescription) -> model.Node:
