@@ -85,8 +85,8 @@ def describe(
         raise UsageError([Diagnostic("existing-file", f"{output} exists", help="replace it with --force")])
     words: list[str] = context.meta[_PROGRAMS]
     if message is not None:
-        from ifgen_tools.ros_graph import View
         from ifgen_tools.nodl.rosgraph import read_node
+        from ifgen_tools.ros_graph import View
 
         chosen, ends, parameters = read_node(message)
         document, omitted = document_of(

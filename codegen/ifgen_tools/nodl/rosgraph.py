@@ -15,9 +15,9 @@ from ifgen.diagnostics import Diagnostic, Label, Span, UsageError
 from ifgen.nodl.model import Category, QosProfile
 from ifgen.reading.storage import read_source
 
-from ifgen_tools.ros_graph import Endpoint
 from ifgen_tools.nodl.parameters import TYPES, RunningParameter
 from ifgen_tools.param.client import FIELDS
+from ifgen_tools.ros_graph import Endpoint
 
 # A number that is not here stands for a policy that nobody could see.
 _HISTORY: Final = {1: "KEEP_LAST", 2: "KEEP_ALL"}
