@@ -27,7 +27,7 @@ def complete(ifgen: Run, monkeypatch: pytest.MonkeyPatch) -> Run:
 
 
 def test_commands_options_and_files(complete: Run) -> None:
-    assert complete("gen") == ["plain,generate"]
+    assert complete("gen") == ["plain,generate", "plain,generators"]
     assert complete("typ") == ["plain,typings"]
     assert complete("paths", "--format", "py") == ["plain,pyright", "plain,pycharm"]
     assert complete("templates", "ex") == ["plain,export"]
@@ -124,7 +124,7 @@ def test_options_that_there_are_not(ifgen: Run) -> None:
         "param", "list", "--paramtype"
     )
     assert "did you mean '--check'?" in said("generate", "--dry-run")
-    assert "did you mean 'generate'?" in said("generat")
+    assert "did you mean 'generate' or 'generators'?" in said("generat")
     assert "did you mean 'templates'?" in said("tempaltes")
     assert "did you mean" not in said("zzz")
     assert said("completion") == (
