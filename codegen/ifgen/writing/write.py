@@ -12,7 +12,7 @@ from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from importlib.util import cache_from_source
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from ifgen.diagnostics import Diagnostic, InputError, shown_path
 from ifgen.reading import manifest
@@ -47,8 +47,7 @@ class OutputPackage:
     manifest: str = manifest.NAME
 
 
-@dataclass(frozen=True, slots=True)
-class TargetFolder:
+class TargetFolder(NamedTuple):
     """All files that targets write into a folder, by path in it."""
 
     directory: Path
@@ -136,8 +135,7 @@ def prepared(
         yield lambda: _apply(folders)
 
 
-@dataclass(frozen=True, slots=True)
-class _Folder:
+class _Folder(NamedTuple):
     """The changes to come in a folder, and the stage with the new contents."""
 
     directory: Path

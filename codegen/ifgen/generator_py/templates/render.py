@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,6 @@ from ifgen.diagnostics import Diagnostic, InputError, shorten
 from ifgen.generator_py.artifact import Artifact, OutputFile
 from ifgen.generator_py.imports import gathered
 from ifgen.generator_py.templates.filters import at_line, explained, load
-from ifgen.model import plain
 from ifgen.writing import cache as kept
 
 if TYPE_CHECKING:
@@ -128,8 +127,14 @@ def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
         bytecode_cache=_bytecode_cache(),
     )
     environment.filters["snake"] = snake_case
-    environment.policies["json.dumps_function"] = partial(json.dumps, default=plain)
+    environment.policies["json.dumps_function"] = _json
     return environment
+
+
+def _json(value: object, **options: Any) -> str:
+    from ifgen.model import plain  # a room that only outputs need
+
+    return json.dumps(value, default=plain, **options)
 
 
 def _bytecode_cache() -> jinja2.BytecodeCache | None:

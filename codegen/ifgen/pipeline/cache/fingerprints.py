@@ -174,8 +174,9 @@ def of_generator(templates: Path) -> bytes:
     Names that Python's own modules have decide how imports are sorted, for example.
     """
     hasher = hashlib.sha256(sys.version.encode())
-    # A wheel has these in the package too, and what matters of them counts by itself.
-    others = (resources.bundled_interfaces(), resources.bundled_nodes(), resources.examples())
+    # A wheel has these in the package too; what matters of them counts by itself. Commands decide nothing.
+    places = (resources.bundled_interfaces(), resources.bundled_nodes(), resources.examples())
+    others = [place for place in (*places, resources.PACKAGE / "cli") if resources.PACKAGE in place.parents]
     for folder, path in chain(_files_below(resources.PACKAGE), _files_below(templates)):
         if not any(path.is_relative_to(other) for other in others):
             hasher.update(_named(str(path.relative_to(folder)), path.read_bytes()))
