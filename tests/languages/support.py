@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import random
 import re
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
+
+from ifgen_runtime import serialize
+from ifgen_tools.conformance.testee import Testee
+
+from ..codec.support import generate as generate_classes
+from ..conformance.make_cases import random_message
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 SUITE: Final = ROOT / "tests/conformance"
@@ -63,3 +70,29 @@ def run(command: Sequence[str], folder: Path) -> str:
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=280, check=False)
     assert done.returncode == 0, done.stdout[-4000:] + done.stderr[-4000:]
     return done.stdout
+
+
+def write_traps(folder: Path) -> Path:
+    """The interfaces with every trap, which authors of generators test with."""
+    run(
+        [sys.executable, "-m", "ifgen", "generators", "test", "json-schema", "--corpus", str(folder)],
+        folder.parent,
+    )
+    return folder
+
+
+def differences(command: Sequence[str], traps: Path, generated: Path) -> list[str]:
+    """The types of which a testee writes other bytes than our codec in Python."""
+    testee, wrong = Testee(command, 60), []
+    try:
+        for name, cls in sorted(generate_classes(generated, traps).items()):
+            if name.startswith(("trap_msgs/", "other_msgs/")):
+                messages = [cls(), *(random_message(random.Random(f"{name} {n}"), cls) for n in range(5))]
+                payloads = [serialize(message).hex() for message in messages]
+                if [testee.ask("recode", name, payload).text for payload in payloads] != [
+                    f"ok {p}" for p in payloads
+                ]:
+                    wrong.append(name)
+    finally:
+        testee.close()
+    return wrong

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ..conformance.support import run_suite, tool
-from .support import ALL, ROOT, example_of, generate, run
+from .support import ALL, ROOT, differences, example_of, generate, run, write_traps
 
 
 def test_the_text(tmp_path: Path) -> None:
@@ -27,6 +27,14 @@ def test_all_types_pass_the_suite(tmp_path: Path) -> None:
     assert build == ""
     code, text = run_suite([str(crate / "target/debug/testee")])
     assert code == 0, text
+
+
+@pytest.mark.slow
+def test_every_trap_has_the_bytes_of_our_codec(tmp_path: Path) -> None:
+    cargo, traps = tool("cargo"), write_traps(tmp_path / "traps")
+    crate = generate(tmp_path, "rust", "rs", traps, testee=True)
+    run([cargo, "build", "--offline", "--quiet"], crate)
+    assert differences([str(crate / "target/debug/testee")], traps, tmp_path / "generated") == []
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from ..conformance.support import TYPESCRIPT, node_modules, run_suite
-from .support import ALL, ROOT, TSCONFIG, example_of, generate, run
+from .support import ALL, ROOT, TSCONFIG, differences, example_of, generate, run, write_traps
 
 
 @pytest.fixture(scope="session")
@@ -99,6 +99,13 @@ def test_every_option_passes_the_suite(compiler: Path, tmp_path: Path, options: 
         ]
         code, text = run_suite(["node", str(output / "testee.js")], *names)
         assert code == 0, text
+
+
+@pytest.mark.slow
+def test_every_trap_has_the_bytes_of_our_codec(compiler: Path, tmp_path: Path) -> None:
+    traps = write_traps(tmp_path / "traps")
+    output = compiled(compiler, generate(tmp_path, "typescript", "ts", traps, testee=True))
+    assert differences(["node", str(output / "testee.js")], traps, tmp_path / "generated") == []
 
 
 @pytest.mark.slow

@@ -212,6 +212,8 @@ class Codec:
         return self._literal(message, (), values)
 
     def _literal(self, message: Message, path: tuple[str, ...], values: Mapping[tuple[str, ...], str]) -> str:
+        if path in values:  # a call for all of an element
+            return values[path]
         parts: list[str] = []
         for each in message.fields:
             inner = (*path, each.name)
