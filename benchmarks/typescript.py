@@ -2,9 +2,9 @@
 
     python benchmarks/typescript.py
 
-Both run in one process of Node and take turns. The figures are process CPU time in microseconds per call, medians over
-9 rounds. The messages are those of codec.py and a LaserScan, with text in ASCII only, since the peer damages other text.
-Needs node, npm and its registry.
+Both run in one process of Node and take turns. The figures are process CPU time in microseconds per call,
+medians over 9 rounds. The messages are those of codec.py and a LaserScan, with text in ASCII only, since the
+peer damages other text. Needs node, npm and its registry.
 """
 
 from __future__ import annotations
@@ -46,7 +46,8 @@ def payloads() -> dict[str, bytes]:
     found = dict(codec.messages(cls))
     numbers = array("f", range(720))
     scan = cls("sensor_msgs/msg/LaserScan")(ranges=numbers, intensities=numbers)
-    return {name: serialize(message) for name, message in (found | {"sensor_msgs/msg/LaserScan": scan}).items()}
+    found["sensor_msgs/msg/LaserScan"] = scan
+    return {name: serialize(message) for name, message in found.items()}
 
 
 def main() -> None:

@@ -53,7 +53,9 @@ def example_of(page: str, folder: Path) -> Mapping[str, str]:
     definition, file = re.findall(r"echo '(.*?)' > (\S+)", text, re.DOTALL)[0]
     (folder / file).parent.mkdir(parents=True)
     (folder / file).write_text(definition + "\n")
-    return {language or "output": block for language, block in re.findall(r"```(\w*)\n(.*?)```", text, re.DOTALL)}
+    return {
+        language or "output": block for language, block in re.findall(r"```(\w*)\n(.*?)```", text, re.DOTALL)
+    }
 
 
 def run(command: Sequence[str], folder: Path) -> str:

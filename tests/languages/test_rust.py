@@ -14,7 +14,7 @@ def test_the_text(tmp_path: Path) -> None:
     generate(tmp_path, "rust", "rs", ROOT / "interfaces/std_srvs", ROOT / "interfaces/visualization_msgs")
     text = (tmp_path / "rs/src/visualization_msgs.rs").read_text()
     assert "        pub type_: i32," in text
-    assert '        pub ns: ::std::borrow::Cow<\'a, str>,' in text
+    assert "        pub ns: ::std::borrow::Cow<'a, str>," in text
     assert "impl cdr::Service for SetBool {" in (tmp_path / "rs/src/std_srvs.rs").read_text()
     assert "forbid(unsafe_code)" in (tmp_path / "rs/src/lib.rs").read_text()
 

@@ -23,7 +23,9 @@ def compiled(compiler: Path, source: Path) -> Path:
     output = source.with_name(f"{source.name}-js")
     (source / "package.json").write_text('{"type": "module"}\n')
     options = TSCONFIG | {"rootDir": str(source), "outDir": str(output)}
-    (source.parent / "tsconfig.json").write_text(json.dumps({"compilerOptions": options, "include": [str(source)]}))
+    (source.parent / "tsconfig.json").write_text(
+        json.dumps({"compilerOptions": options, "include": [str(source)]})
+    )
     run([str(compiler), "-p", "."], source.parent)
     (output / "package.json").write_text('{"type": "module"}\n')
     return output
@@ -32,7 +34,9 @@ def compiled(compiler: Path, source: Path) -> Path:
 @pytest.fixture(scope="module")
 def battery(tmp_path_factory: pytest.TempPathFactory) -> str:
     folder = tmp_path_factory.mktemp("battery")
-    generate(folder, "typescript", "ts", ROOT / "interfaces/sensor_msgs", only=["sensor_msgs/msg/BatteryState"])
+    generate(
+        folder, "typescript", "ts", ROOT / "interfaces/sensor_msgs", only=["sensor_msgs/msg/BatteryState"]
+    )
     assert not (folder / "ts/sensor_msgs/msg/Imu.ts").exists()
     assert (folder / "ts/std_msgs/msg/Header.ts").exists(), "what it needs"
     return (folder / "ts/sensor_msgs/msg/BatteryState.ts").read_text()
@@ -45,12 +49,15 @@ def test_a_field_offers_its_constants(battery: str) -> None:
 
 def test_only_what_is_used_is_imported(battery: str) -> None:
     lines = [line for line in battery.splitlines() if line.startswith("import")]
-    assert lines == ['import * as cdr from "../../cdr.js";', 'import { Header } from "../../std_msgs/msg/Header.js";']
+    assert lines == [
+        'import * as cdr from "../../cdr.js";',
+        'import { Header } from "../../std_msgs/msg/Header.js";',
+    ]
 
 
 def test_arrays_are_typed(battery: str) -> None:
     assert "  cell_voltage: Float32Array;\n" in battery
-    assert 'cell_voltage ?? new Float32Array(0),\n' in battery
+    assert "cell_voltage ?? new Float32Array(0),\n" in battery
 
 
 @pytest.mark.slow
@@ -61,18 +68,35 @@ def test_all_types_pass_the_suite(compiler: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("options", [{"int64": "number"}, {"arrays": "plain"}, {"int64": "number", "arrays": "plain"}])
+@pytest.mark.parametrize(
+    "options", [{"int64": "number"}, {"arrays": "plain"}, {"int64": "number", "arrays": "plain"}]
+)
 def test_every_option_passes_the_suite(compiler: Path, tmp_path: Path, options: dict[str, Any]) -> None:
     only = ["conformance_msgs", "test_msgs", "std_msgs", "sensor_msgs"]
-    output = compiled(compiler, generate(tmp_path, "typescript", "ts", *ALL, only=only, testee=True, **options))
-    patterns = ["alignment/*", "bounds/*", "types/test_msgs/*", "types/sensor_msgs/*", "hostile/conformance_msgs/*"]
+    output = compiled(
+        compiler, generate(tmp_path, "typescript", "ts", *ALL, only=only, testee=True, **options)
+    )
+    patterns = [
+        "alignment/*",
+        "bounds/*",
+        "types/test_msgs/*",
+        "types/sensor_msgs/*",
+        "hostile/conformance_msgs/*",
+    ]
     listed = tmp_path / "failures.txt"
     listed.write_text("some *  numbers beyond 2^53 are not exact\n" if "int64" in options else "")
     arguments = [word for pattern in patterns for word in ("--only", pattern)]
     code, text = run_suite(["node", str(output / "testee.js")], *arguments, "--failures", str(listed))
     assert code == 0, text
     if "int64" in options:
-        names = ["--only", "alignment/Int32/*", "--only", "alignment/Float64/*", "--only", "alignment/Int64/unbounded/*/0:*"]
+        names = [
+            "--only",
+            "alignment/Int32/*",
+            "--only",
+            "alignment/Float64/*",
+            "--only",
+            "alignment/Int64/unbounded/*/0:*",
+        ]
         code, text = run_suite(["node", str(output / "testee.js")], *names)
         assert code == 0, text
 
@@ -134,7 +158,9 @@ no error
 
 @pytest.mark.slow
 def test_wrong_values_and_views(compiler: Path, tmp_path: Path) -> None:
-    source = generate(tmp_path, "typescript", "ts", ROOT / "interfaces/sensor_msgs", ROOT / "interfaces/std_msgs")
+    source = generate(
+        tmp_path, "typescript", "ts", ROOT / "interfaces/sensor_msgs", ROOT / "interfaces/std_msgs"
+    )
     output = compiled(compiler, source)
     (output / "program.js").write_text(PROGRAM)
     assert run(["node", "program.js"], output) == EXPECTED

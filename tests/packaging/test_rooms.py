@@ -53,6 +53,7 @@ SMALL = {
     "ifgen.dynamic.derived": "what only bags have: texts of services instead of their messages",
     "ifgen.pipeline.typings": "`ifgen typings` as `stages` is `ifgen generate`",
     "ifgen.reading.python_text": "places in Python, beside those in the other kinds of files that are read",
+    "ifgen_generators.rust.testee": "code for tests, which users do not get",
     "ifgen_runtime.importing": "messages load it, and must stay light",
     "ifgen_runtime.mismatch.real_rclpy.guarding": "loaded where a policy refuses or adapts",
     "ifgen_runtime.slot_types": "loaded by who asks for SLOT_TYPES",

@@ -212,7 +212,9 @@ class Codec:
         return self._literal(message, (), values)
 
     def _literal(self, message: Message, path: tuple[str, ...], values: Mapping[tuple[str, ...], str]) -> str:
-        parts = []
+        if path in values:  # a call for all of an element
+            return values[path]
+        parts: list[str] = []
         for each in message.fields:
             inner = (*path, each.name)
             value = values.get(inner)

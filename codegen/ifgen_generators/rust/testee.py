@@ -10,7 +10,7 @@ from ifgen_generators.rust.codec import key
 
 
 def canonical(interfaces: Sequence[Interface], crate: str) -> Iterator[str]:
-    """What the testee knows of each type: its canonical text, and the functions to call."""
+    """The code for each type: its canonical text, and the functions to call."""
     messages = [message for interface in interfaces for message in interface.types]
     for message in messages:
         path = f"{crate}::{message.type_name.replace('/', '::')}"

@@ -225,7 +225,9 @@ class ReadFunction:
     def _literal(
         self, fields: Sequence[Field], path: tuple[str, ...], values: Mapping[tuple[str, ...], str]
     ) -> str:
-        parts = []
+        if path in values:  # a call for all of an element
+            return values[path]
+        parts: list[str] = []
         for each in fields:
             inner = (*path, each.name)
             value = values.get(inner)

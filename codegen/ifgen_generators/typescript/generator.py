@@ -137,7 +137,7 @@ class _Module:
             if name in self._own:
                 continue
             other = self._types[name]
-            wanted = []
+            wanted: list[str] = []
             for prefix in ("", "write", "read"):
                 if f"{prefix}{alias}" in words:
                     original = f"{prefix}{other.name}"

@@ -48,7 +48,7 @@ class Case:
         return self.name.partition("/")[0]
 
     def problem(self, reply: Reply) -> str | None:
-        """What is wrong with a reply; None if it is right."""
+        """A sentence about a wrong reply; None if it is right."""
         if reply.verdict == "ok":
             wanted = reply.data in self.accepted or "any" in self.accepted
         else:

@@ -45,7 +45,8 @@ class Testee:
     def hello(self) -> dict[str, str]:
         """Start the program, and return what it says of itself. ToolError if it is no testee."""
         reply = self.ask("hello", "-", timeout=_FIRST_REPLY)
-        pairs = dict(word.partition("=")[::2] for word in reply.data.split())
+        parts = (word.partition("=") for word in reply.data.split())
+        pairs = {key: value for key, _, value in parts}
         if reply.verdict != "ok" or pairs.get("protocol") != "1":
             help = "docs/conformance.md has the protocol; a testee must reply `ok ID protocol=1 language=...`"
             raise ToolError(f"{self._command[0]} does not answer `hello`: {reply.text}", help)
