@@ -1,4 +1,4 @@
-"""What the generators of C and C++ share: literals, the order of structs, and names of headers."""
+"""Literals, the order of structs, and names of headers, for the generators of both C and C++."""
 
 from __future__ import annotations
 

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from .support import ROOT, needs, run
+from ...conformance.support import tool
+from .support import ROOT, run
 
 _FILE = re.compile(r"`([\w./]+)`[^`]*?:\n\n```\w*\n(.*?)```", re.DOTALL)
 _SESSION = re.compile(r"```\n(\$ ifgen generate\n.*?)```", re.DOTALL)
@@ -17,7 +18,7 @@ _SESSION = re.compile(r"```\n(\$ ifgen generate\n.*?)```", re.DOTALL)
 
 @pytest.mark.parametrize(("page", "compiler"), [("cpp", "g++"), ("c", "gcc")])
 def test_the_example_prints_what_the_page_shows(tmp_path: Path, page: str, compiler: str) -> None:
-    needs(compiler)
+    tool(compiler)
     text = (ROOT / f"docs/{page}.md").read_text("utf-8")
     files = _FILE.findall(text.partition("\n## What there is")[0])
     assert [name for name, _ in files] == [

@@ -1,8 +1,7 @@
-"""Helpers: generate a tree of C or C++, compile it, and skip where a compiler is missing."""
+"""Helpers: generate a tree of C or C++, compile it, and run it."""
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -11,22 +10,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import pytest
 from ifgen import resources
 from ifgen.generators import Generator, Request, Response
 from ifgen.model import Model
 from ifgen.pipeline.model import load_model
 
+from ...conformance.support import run_suite
+
 ROOT = resources.PACKAGE.parents[1]
 IFGEN = Path(sys.executable).with_name("ifgen")
 WARNINGS = ["-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Wshadow", "-Werror"]
-
-
-def needs(tool: str) -> str:
-    """The tool; the test is skipped with its name if it is not installed."""
-    if shutil.which(tool) is None:
-        pytest.skip(f"{tool} is not installed")
-    return tool
 
 
 def load(*paths: Path) -> Model:
@@ -87,6 +80,8 @@ def run(command: Sequence[str], cwd: Path | None = None) -> str:
     return done.stdout
 
 
-def conformance(*testee: str) -> str:
-    """The summary of the conformance suite, which a testee passes."""
-    return run([str(IFGEN), "conformance", "--", *testee])
+def passes(*testee: str) -> bool:
+    """Whether a testee passes the conformance suite; shows what it prints if not."""
+    code, text = run_suite(testee)
+    assert code == 0, text
+    return True
