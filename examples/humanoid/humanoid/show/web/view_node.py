@@ -17,7 +17,7 @@ from queue import SimpleQueue
 from typing import Any
 
 from ifgen_tools.graph.connections import Graph, of_endpoints
-from ifgen_tools.graph.reading import FRAMEWORK_TOPICS, is_hidden, read
+from ifgen_tools.ros_graph import FRAMEWORK_TOPICS, is_hidden, read
 from PIL import Image as Pictures
 from rcl_interfaces.msg import Log, Parameter, ParameterType, ParameterValue
 from rcl_interfaces.srv import SetParameters
