@@ -112,6 +112,10 @@ def _type_name(
         problems.error(_wrong_folder, text, span, category)
         return None
     package = search.package(package_name)
+    if "_" in name and (package is None or package.interface(category.folder, name) is None):
+        # Only .idl files define such names; NoDL has none.
+        problems.error(_invalid_type, text, span, category, search)
+        return None
     if package is None or not package.known_files():
         problems.error(_unknown_package, package_name, span, search)
     elif package.interface(category.folder, name) is None:

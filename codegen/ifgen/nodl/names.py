@@ -7,7 +7,7 @@ import re
 from typing import Final, NamedTuple
 
 _NODE: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-TYPE: Final = r"([a-zA-Z][a-zA-Z0-9_]*)(?:/(msg|srv|action))?/([A-Z][a-zA-Z0-9]*)"
+TYPE: Final = r"([a-zA-Z][a-zA-Z0-9_]*)(?:/(msg|srv|action))?/([A-Z][a-zA-Z0-9_]*)"
 _TYPE: Final = re.compile(TYPE)
 _IDENTIFIER: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 ENDPOINT: Final = r"^(~?/[A-Za-z_]|[A-Za-z])[A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$"
