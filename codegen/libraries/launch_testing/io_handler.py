@@ -15,7 +15,7 @@ __all__ = ["ActiveIoHandler", "IoHandler"]
 
 
 class IoHandler:
-    """What processes have written, in its order."""
+    """The output of processes, in its order."""
 
     def __init__(self) -> None:
         self._events: list[ProcessIO] = []

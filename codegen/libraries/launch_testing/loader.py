@@ -39,7 +39,7 @@ def post_shutdown_test() -> Callable[[type[unittest.TestCase]], type[unittest.Te
 
 
 def ready_to_test_action_timeout(timeout: float) -> Callable[[Description], Description]:
-    """Return a decorator: the processes are ready after so many seconds at the latest (15 by default)."""
+    """Return a decorator: the processes must be ready within `timeout` [s], by default 15."""
 
     def decorate(description: Description) -> Description:
         setattr(description, "__ready_to_test_action_timeout__", timeout)  # noqa: B010 - a function has none
@@ -85,7 +85,7 @@ class TestRun:
 
     @property
     def markers(self) -> dict[str, Any]:
-        """What `launch_testing.markers` says of it."""
+        """The marks of `launch_testing.markers`."""
         return dict(getattr(self.function, "__markers__", {}))
 
     def describe(self, ready: Callable[[], None]) -> tuple[LaunchDescription, dict[str, Any]]:

@@ -18,7 +18,7 @@ def keep_alive(test_description: _Function) -> _Function:
 
 
 def retry_on_failure(*, times: int, delay: float | None = None) -> Callable[[_Function], _Function]:
-    """Return a decorator that runs a test again when an assertion fails, up to so many times."""
+    """Return a decorator that runs a test again when an assertion fails, until it has run `times` times."""
     import time  # of a test that is run again
     from functools import wraps
 

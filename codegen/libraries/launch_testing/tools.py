@@ -41,17 +41,17 @@ class ProcessProxy:
 
     @property
     def output(self) -> str:
-        """All that it has written so far."""
+        """The whole output so far."""
         return self._text(None)
 
     @property
     def stdout(self) -> str:
-        """What it has written to stdout so far."""
+        """The output to stdout so far."""
         return self._text(1)
 
     @property
     def stderr(self) -> str:
-        """What it has written to stderr so far."""
+        """The output to stderr so far."""
         return self._text(2)
 
     def _text(self, descriptor: int | None) -> str:

@@ -54,7 +54,7 @@ def message_to_yaml(
 ) -> str:
     """Return a message as YAML.
 
-    :param truncate_length: Show so many characters of texts, and elements of arrays.
+    :param truncate_length: The number of characters of texts, and of elements of arrays, to show.
     :param no_arr: Show only the types and the lengths of arrays.
     :param no_str: Show only the lengths of texts.
     :param flow_style: Write one line.
