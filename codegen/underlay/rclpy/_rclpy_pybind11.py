@@ -230,8 +230,8 @@ def __getattr__(name: str) -> Any:
         from rclpy._executor.events_executor import EventsExecutor  # stands on the layer above
 
         return EventsExecutor
-    if name == "TimerCancelledError":  # which newer ROS has
-        from rclpy.impl.rcl.handle import TimerCancelledError
+    if name == "TimerCancelledError":
+        from rclpy.impl.rcl.handle import TimerCancelledError  # late: Jazzy's module does not list it
 
         return TimerCancelledError
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
