@@ -50,9 +50,11 @@ class StrictCheck:
         try:
             observer = importlib.import_module("rmw_local.observer")
             blocking = importlib.import_module("rclpy.impl.blocking")
+            distro = importlib.import_module("rclpy.impl.distro")
         except ImportError:
             return  # the real rclpy
         self._exchange(blocking, "enabled", True)
+        self._exchange(distro, "strict", True)  # newer API than that of the chosen ROS is an error
         self._undo.append((observer._Current, "observer", observer.install(self._findings)))
 
     def _watch_definitions(self) -> None:

@@ -324,7 +324,7 @@ class _FileReader:
     def _start_map(self) -> None:
         self._depth += 1
         self._key_follows = True
-        directly_below = self._depth == self._node.depth + 3
+        directly_below = self._depth == self._node.depth + 2
         self._new_map = not (self._below_parameters_key and directly_below)
 
     def _end_map(self) -> None:
@@ -348,7 +348,6 @@ class _FileReader:
             raise ParameterYamlError(f"There are no node names before {PARAMETERS_KEY} at line {line}")
         else:
             self._entry = self._entry_of(self._node.text)
-            self._node.pop()
             self._parameter = None
             self._below_parameters_key = True
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import redirect_stdout, suppress
@@ -21,6 +22,10 @@ from ifgen_tools import completion
 
 _TRANSPORTS: Final = ("local", "rclpy", "auto")
 _FLAGS: Final = ("--lockstep", "--generate")
+_DISTRO: Final = "IFGEN_ROS_DISTRO"
+_PROFILES: Final = ("jazzy", "kilted", "lyrical")
+_PROFILE_OF: Final = {**{name: name for name in _PROFILES}, "rolling": "lyrical"}
+"""By the values of `ros_distro` in [tool.ifgen]; those before Jazzy have none of their own."""
 _ENDS: Final = ("--", "--ros-args")
 
 
@@ -39,6 +44,12 @@ _ENDS: Final = ("--", "--ros-args")
     is_flag=True,
     help="One virtual time for all programs: the same run every time (local transport).",
 )
+@click.option(
+    "--ros-distro",
+    type=click.Choice(list(_PROFILES)),
+    envvar=_DISTRO,
+    help="The ROS 2 whose rclpy the local one follows (jazzy, if [tool.ifgen] does not say).",
+)
 @click.option("--generate", "generate_first", is_flag=True, help="Do `ifgen generate` first.")
 @click.option("--of-launch", is_flag=True, hidden=True)  # which has said already who runs elsewhere
 @click.argument(
@@ -51,6 +62,7 @@ _ENDS: Final = ("--", "--ros-args")
 def run(
     transport: Literal["local", "rclpy", "auto"],
     in_lockstep: bool,
+    ros_distro: str | None,
     generate_first: bool,
     of_launch: bool,
     program: tuple[str, ...],
@@ -71,6 +83,8 @@ def run(
         is_part = of_launch or is_one_of_several()
         words, late = _late_options(() if is_part else program)
         settings = settle()
+    if profile := ros_distro or _PROFILE_OF.get(str(settings.config.ros_distro)):
+        os.environ[_DISTRO] = profile  # the program and others that it starts read it
     transport = cast("Literal['local', 'rclpy', 'auto']", late.get("--transport", transport))
     in_lockstep, generate_first = in_lockstep or "--lockstep" in late, generate_first or "--generate" in late
     if generate_first:

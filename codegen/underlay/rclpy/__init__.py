@@ -6,15 +6,18 @@ calls `shutdown`.
 
 from __future__ import annotations
 
+from types import TracebackType
 from typing import TYPE_CHECKING
 
 from rclpy.context import Context
-from rclpy.impl import program
+from rclpy.impl import distro, program
+from rclpy.impl.reexports import reexport
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
 from rclpy.task import Future
-from rclpy.utilities import get_default_context, get_rmw_implementation_identifier, ok, try_shutdown
+from rclpy.utilities import get_default_context, get_rmw_implementation_identifier, ok
 from rclpy.utilities import shutdown as _shutdown
+from rclpy.utilities import try_shutdown as _try_shutdown
 
 if TYPE_CHECKING:
     # What a node brings along: programs write `rclpy.time.Time()` after `import rclpy` alone.
@@ -61,6 +64,9 @@ if TYPE_CHECKING:
     from rclpy import waitable as waitable
     from rclpy.executors import Executor
     from rclpy.node import Node
+    from rclpy.qos import QoSProfile
+else:
+    __getattr__ = reexport(__name__)
 
 __all__ = [
     "Context",
@@ -83,14 +89,41 @@ __all__ = [
 ]
 
 
+class InitContextManager:
+    """The result of `init`: a block, which newer ROS has, shuts the context down at its end.
+
+    :param context: the context that was initialised.
+    :param installed_signal_handlers: the signals that `init` handles; the end of the block gives them back.
+    """
+
+    def __init__(self, context: Context, installed_signal_handlers: SignalHandlerOptions) -> None:
+        self.context = context
+        self.installed_signal_handlers = installed_signal_handlers
+
+    def __enter__(self) -> InitContextManager:
+        distro.uses("init")
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        self.context._destroy_nodes()
+        _try_shutdown(context=None if self.context is get_default_context() else self.context)
+        if self.installed_signal_handlers != SignalHandlerOptions.NO:
+            uninstall_signal_handlers()
+
+
 def init(
     *,
     args: list[str] | None = None,
     context: Context | None = None,
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
-) -> None:
-    """Initialise a context.
+) -> InitContextManager:
+    """Initialise a context. The result is for a `with` block, or for nothing.
 
     :param args: the command line; None for the program's own.
     :param context: None for the default one.
@@ -103,6 +136,7 @@ def init(
         signal_handler_options = SignalHandlerOptions.ALL if context is default else SignalHandlerOptions.NO
     context.init(args, domain_id=domain_id)
     install_signal_handlers(signal_handler_options)
+    return InitContextManager(context, signal_handler_options)
 
 
 def get_global_executor() -> Executor:
@@ -138,6 +172,20 @@ def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None 
         uninstall_signal_handlers()
 
 
+def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
+    """Shut down a context if it is up.
+
+    :param context: None for the default one.
+    :param uninstall_handlers: give signals back; None: if it is the default context, but not in Jazzy.
+    """
+    if uninstall_handlers is not None:
+        distro.uses("try_shutdown")
+    is_default = context is None or context is get_default_context()
+    _try_shutdown(context=context)
+    if uninstall_handlers or (uninstall_handlers is None and is_default and distro.follows("node_shutdown")):
+        uninstall_signal_handlers()
+
+
 def create_node(
     node_name: str,
     *,
@@ -146,6 +194,7 @@ def create_node(
     namespace: str | None = None,
     use_global_arguments: bool = True,
     enable_rosout: bool = True,
+    rosout_qos_profile: QoSProfile | int | None = None,
     start_parameter_services: bool = True,
     parameter_overrides: list[Parameter] | None = None,
     allow_undeclared_parameters: bool = False,
@@ -162,6 +211,7 @@ def create_node(
         namespace=namespace,
         use_global_arguments=use_global_arguments,
         enable_rosout=enable_rosout,
+        rosout_qos_profile=rosout_qos_profile,
         start_parameter_services=start_parameter_services,
         parameter_overrides=parameter_overrides,
         allow_undeclared_parameters=allow_undeclared_parameters,

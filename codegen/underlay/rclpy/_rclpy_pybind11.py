@@ -31,9 +31,11 @@ from rclpy.impl.rcl.context import (
 )
 from rclpy.impl.rcl.graph import (
     rclpy_get_client_names_and_types_by_node,
+    rclpy_get_clients_info_by_service,
     rclpy_get_publisher_names_and_types_by_node,
     rclpy_get_publishers_info_by_topic,
     rclpy_get_rmw_implementation_identifier,
+    rclpy_get_servers_info_by_service,
     rclpy_get_service_names_and_types,
     rclpy_get_service_names_and_types_by_node,
     rclpy_get_subscriber_names_and_types_by_node,
@@ -166,9 +168,11 @@ __all__ = [
     "rclpy_deserialize",
     "rclpy_expand_topic_name",
     "rclpy_get_client_names_and_types_by_node",
+    "rclpy_get_clients_info_by_service",
     "rclpy_get_publisher_names_and_types_by_node",
     "rclpy_get_publishers_info_by_topic",
     "rclpy_get_rmw_implementation_identifier",
+    "rclpy_get_servers_info_by_service",
     "rclpy_get_service_names_and_types",
     "rclpy_get_service_names_and_types_by_node",
     "rclpy_get_subscriber_names_and_types_by_node",
@@ -226,4 +230,8 @@ def __getattr__(name: str) -> Any:
         from rclpy._executor.events_executor import EventsExecutor  # stands on the layer above
 
         return EventsExecutor
+    if name == "TimerCancelledError":
+        from rclpy.impl.rcl.handle import TimerCancelledError  # late: Jazzy's module does not list it
+
+        return TimerCancelledError
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

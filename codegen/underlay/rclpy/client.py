@@ -10,10 +10,12 @@ from rmw_local import timing
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
-from rclpy.impl import blocking
+from rclpy.impl import blocking, distro
 from rclpy.impl.blocking import wait_for_graph
+from rclpy.impl.blocks import Block
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
+from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import Generic, ServiceT_co
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
@@ -22,6 +24,8 @@ from rclpy.task import Future
 if TYPE_CHECKING:
     from rclpy.impl.typed import RequestT, ResponseT
     from rclpy.impl.typed import Service as ServiceWith
+else:
+    __getattr__ = reexport(__name__)
 
 # Programs import them from here.
 SrvType = TypeVar("SrvType")
@@ -29,8 +33,10 @@ SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
-class Client(Generic[ServiceT_co]):
+class Client(Block, Generic[ServiceT_co]):
     """Sends requests to a service; made by `Node.create_client`."""
+
+    _ros_entity = "Client"
 
     def __init__(
         self,
@@ -63,10 +69,11 @@ class Client(Generic[ServiceT_co]):
     def call(
         self: Client[ServiceWith[RequestT, ResponseT]], request: RequestT, timeout_sec: float | None = None
     ) -> ResponseT | None:
-        """Send a request and wait for the response, which another thread has to receive; None at the timeout.
+        """Send a request and wait for the response, which another thread has to receive.
 
-        Not for callbacks of a single-threaded executor: the response waits until they return.
-        Raises TypeError for a request of another class, and what the future holds as its exception.
+        At the timeout it returns None, or raises TimeoutError as newer ROS does. Not for callbacks of a
+        single-threaded executor: the response waits until they return. Raises TypeError for a request of
+        another class, and what the future holds as its exception.
         """
         if blocking.enabled:
             call = f"service '{self.srv_name}'"
@@ -77,6 +84,8 @@ class Client(Generic[ServiceT_co]):
         # The future may have been completed, with no executor to run the callback, before that was added.
         if not future.done() and not answered.wait(timeout_sec):
             self.remove_pending_request(future)
+            if distro.follows("call_timeout"):
+                raise TimeoutError
         exception = future.exception()
         if exception is not None:
             raise exception

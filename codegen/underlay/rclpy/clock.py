@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
 
 from .clock_type import ClockType as ClockType  # noqa: PLC0414 - users import it from here
 from .context import Context
@@ -16,6 +17,9 @@ from .duration import Duration
 from .exceptions import NotInitializedException
 from .time import Time, TimeHandle
 from .utilities import get_default_context
+
+if not TYPE_CHECKING:
+    __getattr__ = reexport(__name__)
 
 
 class ClockChange(IntEnum):

@@ -6,15 +6,19 @@ import atexit
 import os
 import sys
 import threading
+import warnings
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from types import MethodType, TracebackType
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 from weakref import WeakMethod, WeakSet
 
 from rclpy.destroyable import DestroyableType
-from rclpy.impl import program
+from rclpy.impl import distro, program
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+
+if TYPE_CHECKING:
+    from rclpy.node import Node
 
 
 class ContextHandle(DestroyableType, Protocol):
@@ -53,6 +57,7 @@ class Context(AbstractContextManager["Context"]):
         self._lock = threading.RLock()  # a shutdown callback may look at the context, as may a signal handler
         self._callbacks: list[WeakMethod[MethodType] | Callable[[], object]] = []
         self._logging_initialized = False
+        self._nodes: WeakSet[Node] = WeakSet()
         self.__context: _rclpy.Context | None = None
 
     @property
@@ -104,6 +109,8 @@ class Context(AbstractContextManager["Context"]):
         """
         if self.__context is None:
             raise RuntimeError("Context must be initialized before it can be shutdown")
+        if distro.follows("node_shutdown"):
+            self._destroy_nodes()
         try:
             with self.__context, self._lock:
                 self.__context.shutdown()
@@ -115,11 +122,28 @@ class Context(AbstractContextManager["Context"]):
         """Shut it down if it is up."""
         if self.__context is None:
             return
+        if distro.follows("node_shutdown"):
+            self._destroy_nodes()
         with self.__context, self._lock:
             if self.__context.ok():
                 self.__context.shutdown()
             self._logging_fini()  # also after a signal
         self._call_back()
+
+    def track_node(self, node: Node) -> None:
+        """Destroy a node, which is held weakly, when this shuts down; nodes do this themselves."""
+        distro.uses("track_node")
+        self._nodes.add(node)
+
+    def untrack_node(self, node: Node) -> None:
+        """Take back `track_node`."""
+        distro.uses("track_node")
+        self._nodes.discard(node)
+
+    def _destroy_nodes(self) -> None:
+        """Destroy the nodes that are left, as newer ROS does before the callbacks of `on_shutdown`."""
+        for node in list(self._nodes):
+            node.destroy_node()
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
         """Call this at shutdown, or now if that has been.
@@ -148,6 +172,15 @@ class Context(AbstractContextManager["Context"]):
             return self.__context.get_domain_id()
 
     def __enter__(self) -> Context:
+        if self.ok() or (self.__context is not None and distro.follows("context_init")):
+            distro.uses("Context")
+            return self
+        if distro.follows("context_init"):
+            warnings.warn(
+                "init() must be called on a Context before using it in a Python context manager. "
+                "Calling init() implicitly is deprecated",
+                stacklevel=2,
+            )
         self.init()
         return self
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Protocol
 
 from rclpy.constants import S_TO_NS
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 if TYPE_CHECKING:
@@ -58,6 +60,28 @@ class Duration:
 
     def __ge__(self, other: object) -> bool:
         return self.nanoseconds >= other.nanoseconds if isinstance(other, Duration) else NotImplemented
+
+    def __add__(self, other: Duration) -> Duration:
+        if not isinstance(other, Duration):
+            return NotImplemented
+        distro.uses("Duration")
+        return Duration(nanoseconds=self.nanoseconds + other.nanoseconds)
+
+    def __sub__(self, other: Duration) -> Duration:
+        if not isinstance(other, Duration):
+            return NotImplemented
+        distro.uses("Duration")
+        return Duration(nanoseconds=self.nanoseconds - other.nanoseconds)
+
+    def __mul__(self, factor: float) -> Duration:
+        if not isinstance(factor, int | float):
+            return NotImplemented
+        distro.uses("Duration")
+        if factor == math.inf:
+            return Duration(nanoseconds=Infinite.nanoseconds)
+        if not math.isfinite(factor):
+            raise ValueError("Can't multiply duration with nan")
+        return Duration(nanoseconds=int(self.nanoseconds * factor))
 
     def to_msg(self) -> builtin_interfaces.msg.Duration:
         """Convert to builtin_interfaces/msg/Duration."""

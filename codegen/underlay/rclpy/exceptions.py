@@ -5,9 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
 
 if TYPE_CHECKING:
+    from rclpy.impl.rcl.handle import TimerCancelledError as TimerCancelledError  # noqa: PLC0414 - programs import it from here
     from rclpy.parameter import AllowableParameterValue, Parameter
+else:
+    __getattr__ = reexport(__name__)
 
 InvalidHandle = _rclpy.InvalidHandle
 

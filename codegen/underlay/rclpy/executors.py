@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import threading
 import warnings
 from collections.abc import Callable, Coroutine, Generator, Iterator
 from contextlib import AbstractContextManager
@@ -39,6 +40,11 @@ if not TYPE_CHECKING:
     __getattr__ = reexport(__name__)
 
 WaitableEntityType = TypeVar("WaitableEntityType")
+
+_ALREADY_SPINNING = (
+    "Executor is already spinning: in a callback, `await` the future, or spin with another executor "
+    "(`executor=`); a blocking call needs another callback group and a MultiThreadedExecutor"
+)
 
 
 class TimeoutException(Exception):
@@ -118,12 +124,18 @@ class Executor(AbstractContextManager["Executor"]):
         self._cb_iter: Iterator[Work] | None = None  # what wait_for_ready_callbacks goes on with
         self._last_args: tuple[Any, ...] | None = None
         self._last_kwargs: dict[str, Any] | None = None
+        self._turn = [None]  # the right to spin, which whoever spins pops; a lock takes five times as long
         self._context.on_shutdown(self.wake)
 
     @property
     def context(self) -> Context:
         """The context of the executor."""
         return self._context
+
+    @property
+    def is_spinning(self) -> bool:
+        """Whether a thread is in one of the methods that spin."""
+        return not self._turn
 
     @property
     def _is_shutdown(self) -> bool:  # programs ask for it
@@ -208,16 +220,33 @@ class Executor(AbstractContextManager["Executor"]):
         self._queue.poke()
 
     def spin(self) -> None:
-        """Execute callbacks until the executor or its context is shut down."""
+        """Execute callbacks until the executor or its context is shut down.
+
+        :raises RuntimeError: if it spins already.
+        """
         queue = self._queue
+        once = self.spin_once
+        is_own = getattr(once, "__func__", None) is Executor.spin_once  # else each round starts by itself
+        turn = self._turn
+        if is_own:
+            try:
+                turn.pop()
+            except IndexError:
+                raise RuntimeError(_ALREADY_SPINNING) from None
+            once = self._spin_once_impl
         try:
             while self._context.ok() and not queue.closed:
-                self.spin_once()
+                once()
         finally:
+            if is_own:
+                turn.append(None)
             self._context._call_back()
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
-        """Execute callbacks until a future is done or given up, or for `timeout_sec` seconds."""
+        """Execute callbacks until a future is done or given up, or for `timeout_sec` seconds.
+
+        :raises RuntimeError: if it spins already.
+        """
         queue = self._queue
         wake_when_done(future, queue.poke)
         until = timing.deadline(timeout_sec)
@@ -234,13 +263,30 @@ class Executor(AbstractContextManager["Executor"]):
         """Wait for one callback and run it; one thread at a time.
 
         :param timeout_sec: None or negative: no limit; 0: do not wait.
+        :raises RuntimeError: if it spins already.
         """
-        self._spin_once_impl(timeout_sec)
+        turn = self._turn
+        try:
+            turn.pop()
+        except IndexError:
+            raise RuntimeError(_ALREADY_SPINNING) from None
+        try:
+            self._spin_once_impl(timeout_sec)
+        finally:
+            turn.append(None)
 
     def spin_once_until_future_complete(self, future: Future, timeout_sec: Timeout = None) -> None:
         """Do what `spin_once` does, but do not wait once the future is done."""
         wake_when_done(future, self._queue.poke)
-        self._spin_once_impl(timeout_sec, future.done)
+        turn = self._turn
+        try:
+            turn.pop()
+        except IndexError:
+            raise RuntimeError(_ALREADY_SPINNING) from None
+        try:
+            self._spin_once_impl(timeout_sec, future.done)
+        finally:
+            turn.append(None)
 
     def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
         raise NotImplementedError
@@ -314,6 +360,9 @@ class Executor(AbstractContextManager["Executor"]):
                 return
 
 
+_wait_for_ready_callbacks = Executor.wait_for_ready_callbacks  # not yet replaced by a derived class or a test
+
+
 class SingleThreadedExecutor(Executor):
     """Runs callbacks on the thread that spins."""
 
@@ -324,11 +373,15 @@ class SingleThreadedExecutor(Executor):
         self._work_condition = never
 
     def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
-        if getattr(self.wait_for_ready_callbacks, "__func__", None) is not Executor.wait_for_ready_callbacks:
+        if getattr(self.wait_for_ready_callbacks, "__func__", None) is not _wait_for_ready_callbacks:
             self._spin_once_by_handler(timeout_sec, wait_condition)
             return
         work = self._work
-        if work is None or self._work_timeout != timeout_sec or self._work_condition != wait_condition:
+        if (
+            work is None
+            or self._work_timeout != timeout_sec
+            or (self._work_condition is not wait_condition and self._work_condition != wait_condition)
+        ):
             self._work_timeout, self._work_condition = timeout_sec, wait_condition
             work = self._work = self._search(timeout_sec, None, wait_condition, again=True)
         try:
@@ -380,12 +433,29 @@ class MultiThreadedExecutor(Executor):
         self._futures: list[Task] = []
         self._executor = ThreadPoolExecutor(num_threads)
 
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
+        """Stop executing, and wait for callbacks that run.
+
+        :param timeout_sec: accepted for upstream's sake.
+        :param wait_for_threads: False: do not wait. A callback never waits for itself.
+        :return: True.
+        """
+        super().shutdown(timeout_sec)
+        is_callback = threading.current_thread() in self._executor._threads
+        self._executor.shutdown(wait=wait_for_threads and not is_callback)
+        return True
+
     def _spin_once_impl(self, timeout_sec: Timeout = None, wait_condition: Condition = never) -> None:
         try:
             work = self.wait_for_ready_callbacks(timeout_sec, None, wait_condition)
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
             return
-        self._executor.submit(self._runner.run_in_pool, work)
+        try:
+            self._executor.submit(self._runner.run_in_pool, work)
+        except RuntimeError:
+            if not self._queue.closed:
+                raise
+            return  # another thread has shut it down since
         if work[0] not in self._futures:
             self._futures.append(work[0])
         for future in self._futures[:]:

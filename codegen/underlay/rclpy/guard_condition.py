@@ -6,11 +6,14 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
 from rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.context import Context
+else:
+    __getattr__ = reexport(__name__)
 
 
 class GuardCondition:

@@ -49,7 +49,9 @@ from rclpy.exceptions import (
 from rclpy.executors import Executor
 from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
+from rclpy.impl import distro
 from rclpy.impl.blocking import wait_for_graph
+from rclpy.impl.blocks import Block
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import cleaned, wrong_return
 from rclpy.impl.reexports import reexport
@@ -58,10 +60,11 @@ from rclpy.logging_service import LoggingService
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
 from rclpy.parameter_service import ParameterService
 from rclpy.publisher import Publisher
-from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
+from rclpy.qos import QoSProfile, _rosout_profile, qos_profile_parameter_events, qos_profile_services_default
 from rclpy.qos_overriding_options import QoSOverridingOptions, _declare_qos_parameters
 from rclpy.service import Service
 from rclpy.subscription import Subscription
+from rclpy.subscription_content_filter_options import ContentFilterOptions
 from rclpy.time_source import TimeSource
 from rclpy.timer import Rate, Timer
 from rclpy.topic_endpoint_info import TopicEndpointInfo
@@ -76,6 +79,7 @@ from rclpy.validate_topic_name import validate_topic_name
 from rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
+    from rclpy.impl.newer import ServiceEndpointInfo
     from rclpy.impl.rcutils_logger import RcutilsLogger
     from rclpy.impl.typed import (
         HasViews,
@@ -100,6 +104,7 @@ __all__ = [
     "CallbackGroup",
     "Client",
     "Clock",
+    "ContentFilterOptions",
     "Context",
     "Executor",
     "FloatingPointRange",
@@ -177,12 +182,23 @@ _Entity = TypeVar("_Entity")
 
 
 def _open(
-    context: Context, name: str, namespace: str, arguments: list[str] | None, use_global: bool, rosout: bool
+    context: Context,
+    name: str,
+    namespace: str,
+    arguments: list[str] | None,
+    use_global: bool,
+    rosout: bool,
+    rosout_qos: QoSProfile | int | None,
 ) -> _rclpy.Node:
     """Return the handle of a new node."""
+    qos = None
+    if rosout_qos is not None:
+        distro.uses("rosout_qos_profile")
+        profile = _rosout_profile(rosout_qos) if isinstance(rosout_qos, int) else rosout_qos
+        qos = profile.get_c_qos_profile()
     try:
         with context.handle:
-            return _rclpy.Node(name, namespace, context.handle, arguments, use_global, rosout)
+            return _rclpy.Node(name, namespace, context.handle, arguments, use_global, rosout, qos)
     except ValueError:
         # These say which character is wrong.
         validate_node_name(name)
@@ -190,12 +206,17 @@ def _open(
         raise
 
 
-class Node:
+def _content_filter(options: ContentFilterOptions) -> tuple[str, list[str]]:
+    """The parts of the options; AttributeError for a plain tuple, as upstream."""
+    return options.filter_expression, options.expression_parameters
+
+
+class Node(Block):
     """A node: the unit of naming, ownership and parameters.
 
     `cli_args` are arguments for this node alone and win over those of the process, which
     `use_global_arguments=False` ignores. `parameter_overrides` win over values from arguments and files. With
-    `enable_logger_service` other nodes can read and set logger levels.
+    `enable_logger_service` other nodes can read and set logger levels. `rosout_qos_profile` may be a depth.
 
     Entities may be created and destroyed on any thread, also while the node spins: lists change by single
     operations, and the executor is woken after each.
@@ -207,6 +228,8 @@ class Node:
     """
 
     PARAM_REL_TOL = rules.RELATIVE_TOLERANCE
+    _ros_entity = "Node"
+    _ros_end = "destroy_node"
 
     def __init__(
         self,
@@ -217,6 +240,7 @@ class Node:
         namespace: str | None = None,
         use_global_arguments: bool = True,
         enable_rosout: bool = True,
+        rosout_qos_profile: QoSProfile | int | None = None,
         start_parameter_services: bool = True,
         parameter_overrides: list[Parameter] | None = None,
         allow_undeclared_parameters: bool = False,
@@ -246,8 +270,15 @@ class Node:
         if not self._context.ok():
             raise NotInitializedException("cannot create node")
         self.__node = _open(
-            self._context, node_name, namespace or "", cli_args, use_global_arguments, enable_rosout
+            self._context,
+            node_name,
+            namespace or "",
+            cli_args,
+            use_global_arguments,
+            enable_rosout,
+            rosout_qos_profile,
         )
+        self._context._nodes.add(self)
         with self.__node:
             self._logger = get_logger(self.__node.logger_name())
         self._parameter_event_publisher: Publisher[Any] | None = self.create_publisher(
@@ -805,6 +836,8 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: Literal[False] = False,
+        content_filter_options: ContentFilterOptions | None = None,
+        acceptable_buffer_backends: str | None = "cpu",
         views: Literal[True],
     ) -> Subscription[ViewsT]: ...
     @overload
@@ -819,6 +852,8 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: Literal[False] = False,
+        content_filter_options: ContentFilterOptions | None = None,
+        acceptable_buffer_backends: str | None = "cpu",
         views: Literal[True],
     ) -> Subscription[ViewsT]: ...
     @overload
@@ -833,6 +868,8 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: Literal[False] = False,
+        content_filter_options: ContentFilterOptions | None = None,
+        acceptable_buffer_backends: str | None = "cpu",
         views: bool = False,
     ) -> Subscription[MessageT]: ...
     @overload
@@ -847,6 +884,8 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: Literal[False] = False,
+        content_filter_options: ContentFilterOptions | None = None,
+        acceptable_buffer_backends: str | None = "cpu",
         views: bool = False,
     ) -> Subscription[MessageT]: ...
     @overload
@@ -861,6 +900,8 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: Literal[True],
+        content_filter_options: ContentFilterOptions | None = None,
+        acceptable_buffer_backends: str | None = "cpu",
     ) -> Subscription[MessageT]: ...
     def create_subscription(
         self,
@@ -873,22 +914,29 @@ class Node:
         event_callbacks: SubscriptionEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
+        content_filter_options: ContentFilterOptions | None = None,
+        acceptable_buffer_backends: str | None = "cpu",
         views: bool = False,
     ) -> Subscription[Any]:
         """Create a subscription to `topic`; `callback` gets the message, and its info if it takes two.
 
-        `qos_profile` may be a history depth. With `raw` the callback gets serialized bytes. With `views`,
+        `qos_profile` may be a history depth. With `raw` the callback gets serialized bytes. Messages that
+        `content_filter_options` do not accept never come. All memory is the CPU's here, so
+        `acceptable_buffer_backends` changes nothing. With `views`,
         which only the local transport has, sequences of numbers are numpy arrays that show the received
         bytes, as `ifgen_runtime.deserialize(..., views=True)` returns them.
         """
         if raw and views:
             raise ValueError("create_subscription() cannot have raw and views: raw passes bytes")
+        if acceptable_buffer_backends != "cpu":
+            distro.uses("buffer_backends")
         profile = self._validate_qos_or_depth_parameter(qos_profile)
         self.__declare_qos_overrides(Subscription, topic, profile, qos_overriding_options)
         group = callback_group or self.default_callback_group
         check_is_valid_msg_type(msg_type)
         msg_type = _class_of(msg_type)
-        handle = self.__create_handle(_rclpy.Subscription, msg_type, topic, profile, is_service=False)
+        wanted = None if content_filter_options is None else _content_filter(content_filter_options)
+        handle = self.__create_handle(_rclpy.Subscription, msg_type, topic, profile, wanted, is_service=False)
         try:
             subscription = Subscription(
                 handle,
@@ -981,11 +1029,11 @@ class Node:
         return Rate(timer, context=self.context)
 
     def __create_handle(
-        self, kind: Any, interface: Any, name: str, qos_profile: QoSProfile, *, is_service: bool
+        self, kind: Any, interface: Any, name: str, qos_profile: QoSProfile, *more: Any, is_service: bool
     ) -> Any:
         try:
             with self.handle:
-                return kind(self.handle, interface, name, qos_profile.get_c_qos_profile())
+                return kind(self.handle, interface, name, qos_profile.get_c_qos_profile(), *more)
         except ValueError:
             self._validate_topic_or_service_name(name, is_service=is_service)
             raise
@@ -1047,6 +1095,7 @@ class Node:
 
     def destroy_node(self) -> None:
         """Destroy the node and everything it created; a second call does nothing."""
+        self._context._nodes.discard(self)
         self._parameter_event_publisher = None
         self._type_description_service.destroy()
         owned: tuple[tuple[list[Any], Callable[[Any], bool]], ...] = (
@@ -1169,6 +1218,50 @@ class Node:
             if not no_mangle:
                 topic_name = _rclpy.rclpy_remap_topic_name(self.handle, self.__expand_valid(topic_name))
             return [TopicEndpointInfo(**info) for info in query(self.handle, topic_name, no_mangle)]
+
+    def get_clients_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        """Describe the clients of a service; its name is expanded, but not remapped, unless `no_mangle`."""
+        return self.__service_endpoints(service_name, no_mangle, _rclpy.rclpy_get_clients_info_by_service)
+
+    def get_servers_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        """Describe the servers of a service; its name is expanded, but not remapped, unless `no_mangle`."""
+        return self.__service_endpoints(service_name, no_mangle, _rclpy.rclpy_get_servers_info_by_service)
+
+    def __service_endpoints(
+        self, service_name: str, no_mangle: bool, query: Callable[[Any, str], list[dict[str, Any]]]
+    ) -> list[ServiceEndpointInfo]:
+        from rclpy.impl.newer import ServiceEndpointInfo  # late: few programs ask
+
+        distro.uses("service_endpoints")
+        name = service_name if no_mangle else self.__expand_valid(service_name, is_service=True)
+        with self.handle:
+            return [ServiceEndpointInfo(**info) for info in query(self.handle, name)]
+
+    def get_action_names_and_types(self) -> _NamesAndTypes:
+        """Return (action, types) of every action that has a server or a client."""
+        distro.uses("action_graph")
+        with self.handle:
+            return self.handle.get_action_names_and_types()
+
+    def get_action_client_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> _NamesAndTypes:
+        """Return (action, types) of everything that a node has action clients for."""
+        distro.uses("action_graph")
+        with self.handle:
+            return self.handle.get_action_client_names_and_types_by_node(node_name, node_namespace)
+
+    def get_action_server_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> _NamesAndTypes:
+        """Return (action, types) of every action that a node serves."""
+        distro.uses("action_graph")
+        with self.handle:
+            return self.handle.get_action_server_names_and_types_by_node(node_name, node_namespace)
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait up to `timeout` [s] until a node is there; False if it does not come."""

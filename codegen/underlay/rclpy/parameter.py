@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import array
-from collections.abc import Callable
-from enum import Enum
+from collections.abc import Callable, Iterator
+from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import Parameter as ParameterMsg
 from rcl_interfaces.msg import ParameterType, ParameterValue
+
+from rclpy.impl import distro
+from rclpy.impl.typed import Generic, T
 
 PARAMETER_SEPARATOR_STRING = "."
 
@@ -27,10 +30,16 @@ def _is_a(kind: type) -> Callable[[object], bool]:
     return lambda value: isinstance(value, kind)
 
 
-class Parameter:
+if TYPE_CHECKING:
+    _TypeBase = Enum
+else:
+    _TypeBase = IntEnum if distro.follows("parameter_type") else Enum
+
+
+class Parameter(Generic[T]):
     """A named, typed value. Two parameters are equal only if they are the same object."""
 
-    class Type(Enum):
+    class Type(_TypeBase):
         """The types a parameter can have, numbered as in rcl_interfaces/msg/ParameterType."""
 
         NOT_SET = ParameterType.PARAMETER_NOT_SET
@@ -204,36 +213,72 @@ def parameter_dict_from_yaml_file(
     """Return the parameters of a YAML file as messages by name.
 
     Takes the parameters of the given nodes, by default those of every node except `/**`, and those of `/**`
-    first if `use_wildcard`. `namespace` is put before every name. Raises RuntimeError if the file lacks the
-    requested parameters.
+    first if `use_wildcard`. For a node, sections of wildcards (`/*/node`, `/**/node`) come before those of
+    its name. Sections may stand inside their namespace. `namespace` is put before every name. Raises
+    RuntimeError if the file lacks the requested parameters.
     """
     import yaml  # its import costs more than the rest of this module
 
     with open(parameter_file) as file:  # noqa: PTH123 - also takes file descriptors, as upstream's does
         content = yaml.safe_load(file)
     values: dict[str, Any] = {}
-    for node in _selected_nodes(content, use_wildcard, target_nodes):
-        section = content[node]
+    for name, section in _sections(content, use_wildcard, target_nodes):
         if not isinstance(section, dict) or "ros__parameters" not in section:
-            raise RuntimeError(f"YAML file is not a valid ROS parameter file for node {node}")
+            raise RuntimeError(f"YAML file is not a valid ROS parameter file for node {name}")
         values.update(section["ros__parameters"])
     return _unpack_parameter_dict(namespace, values)
 
 
-def _selected_nodes(content: dict[str, Any], use_wildcard: bool, target_nodes: list[str] | None) -> list[str]:
-    selected = ["/**"] if use_wildcard and "/**" in content else []
+def _sections(
+    content: dict[str, Any], use_wildcard: bool, target_nodes: list[str] | None
+) -> list[tuple[str, Any]]:
+    """The sections of the file that count, with their names; the later ones win."""
+    selected = [("/**", content["/**"])] if use_wildcard and "/**" in content else []
     if target_nodes:
-        for node in target_nodes:
-            if node not in content:
+        for target in target_nodes:
+            found = list(_sections_of(content, target if target.startswith("/") else f"/{target}"))
+            if not found and target in content:
+                found = [(target, content[target])]
+            if not found:
                 raise RuntimeError(
-                    f"Param file does not contain parameters for {node},only for nodes: {list(content)} "
+                    f"Param file does not contain parameters for {target},only for nodes: {list(content)} "
                 )
-        selected += target_nodes
+            selected += found
     else:
-        selected += [node for node in content if node != "/**"]
+        selected += [each for key in content if key != "/**" for each in _nested(key, content[key])]
     if not selected:
         raise RuntimeError("Param file does not contain selected parameters")
     return selected
+
+
+def _sections_of(content: dict[str, Any], target: str) -> Iterator[tuple[str, Any]]:
+    """The sections for one node, an absolute name: by wildcards first, then by its name."""
+    namespace, _, node = target.rpartition("/")
+    is_one_level = namespace.count("/") == 1
+    wildcards = (("/**", True), ("/*", is_one_level))
+    for wildcard, fits in wildcards:
+        if fits and f"{wildcard}/{node}" in content:
+            yield target, content[f"{wildcard}/{node}"]
+        if fits and isinstance(content.get(wildcard), dict) and node in content[wildcard]:
+            yield target, content[wildcard][node]
+    if target in content:
+        yield target, content[target]
+    if not namespace and node in content:
+        yield target, content[node]
+    for key in (namespace, namespace[1:]):
+        section = content.get(key) if key else None
+        if isinstance(section, dict) and node in section:
+            yield target, section[node]
+
+
+def _nested(name: str, section: Any) -> Iterator[tuple[str, Any]]:
+    """A node's section, or those inside a namespace."""
+    is_namespace = isinstance(section, dict) and "ros__parameters" not in section
+    inner = [key for key, value in section.items() if isinstance(value, dict)] if is_namespace else []
+    if not inner:
+        yield name, section
+    for key in inner:
+        yield from _nested(f"{name}/{key}", section[key])
 
 
 def _unpack_parameter_dict(namespace: str, parameter_dict: dict[str, Any]) -> dict[str, ParameterMsg]:

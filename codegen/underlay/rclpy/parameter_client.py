@@ -20,6 +20,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.impl.blocking import wait_for_graph
 from rclpy.impl.messages import cleaned
+from rclpy.impl.reexports import reexport
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_dict_from_yaml_file
 from rclpy.qos import QoSProfile, qos_profile_parameter_events, qos_profile_services_default
@@ -29,6 +30,8 @@ from rclpy.task import Future
 
 if TYPE_CHECKING:
     from rclpy.client import Client
+else:
+    __getattr__ = reexport(__name__)
 
 Parameters = Sequence[Parameter | ParameterMsg]
 Callback = Callable[[Any], Any]

@@ -90,10 +90,17 @@ class ParameterService:
 
     def _set(self, messages: Any) -> SetParametersResult:
         parameters = [Parameter.from_parameter_msg(message) for message in messages]
+        node = self._get_node()
         try:
-            return self._get_node().set_parameters_atomically(parameters)
+            result = node.set_parameters_atomically(parameters)
         except ParameterNotDeclaredException as error:
-            return SetParametersResult(successful=False, reason=str(error))
+            result = SetParametersResult(successful=False, reason=str(error))
+        if not result.successful:
+            names = ", ".join(parameter.name for parameter in parameters)
+            node.get_logger().warning(
+                f"Parameters that another node asked to set stay: {names}: {result.reason}"
+            )
+        return result
 
     def _get_node(self) -> Node:
         node = self._node_weak_ref()

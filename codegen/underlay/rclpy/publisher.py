@@ -2,20 +2,29 @@
 
 from __future__ import annotations
 
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
 from rclpy.event_handler import EventHandler, PublisherEventCallbacks
+from rclpy.impl.blocks import Block
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import Generic, MessageT
 from rclpy.qos import QoSProfile
+
+if TYPE_CHECKING:
+    from rclpy.impl.interface_protocols import MsgT as MsgT  # noqa: PLC0414 - programs import it from here
+else:
+    __getattr__ = reexport(__name__)
 
 MsgType = TypeVar("MsgType")  # programs import it from here
 
 
-class Publisher(Generic[MessageT]):
+class Publisher(Block, Generic[MessageT]):
     """Publishes messages on a topic; made by `Node.create_publisher`."""
+
+    _ros_entity = "Publisher"
 
     def __init__(
         self,

@@ -5,10 +5,15 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from enum import Enum, IntEnum
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.duration import Duration
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
+
+if not TYPE_CHECKING:
+    __getattr__ = reexport(__name__)
 
 
 class QoSPolicyKind(IntEnum):
@@ -35,7 +40,7 @@ class InvalidQoSProfileException(Exception):
     """A profile was made with arguments that do not make one."""
 
     def __init__(self, *args: Any) -> None:
-        super().__init__("Invalid QoSProfile", *args)
+        super().__init__(*(args if distro.follows("qos_exception") else ("Invalid QoSProfile", *args)))
 
 
 class QoSPolicyEnum(IntEnum):
@@ -179,10 +184,15 @@ class QoSProfile:
         "_avoid_ros_namespace_conventions",
     ]
 
-    def __init__(self, **kwargs: Any) -> None:
-        assert all(f"_{key}" in self.__slots__ for key in kwargs), (
-            f"Invalid arguments passed to constructor: {kwargs.keys()!r}"
-        )
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        unknown = [key for key in kwargs if f"_{key}" not in self.__slots__]
+        if unknown and distro.follows("qos_keyword"):
+            raise TypeError(f"QoSProfile() got an unexpected keyword argument '{unknown[0]}'")
+        assert not unknown, f"Invalid arguments passed to constructor: {kwargs.keys()!r}"
+        if args:
+            self._take_positional(args, kwargs)
+        if distro.follows("qos_keyword"):
+            kwargs = {key: value for key, value in kwargs.items() if value is not None}
         if "history" not in kwargs:
             if "depth" not in kwargs:
                 raise InvalidQoSProfileException("History and/or depth settings are required.")
@@ -193,6 +203,19 @@ class QoSProfile:
         policies = {**_DEFAULTS, **kwargs}
         for slot in self.__slots__[1:]:
             setattr(self, slot[1:], policies[slot[1:]])
+
+    def _take_positional(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> None:
+        """Add to the keywords what newer ROS takes by position; None is a default there."""
+        if len(args) > len(self.__slots__):
+            most = f"from 1 to {1 + len(self.__slots__)} positional arguments"
+            expected = most if distro.follows("qos_keyword") else "1 positional argument"
+            raise TypeError(f"QoSProfile.__init__() takes {expected} but {1 + len(args)} were given")
+        distro.uses("QoSProfile")
+        for slot, value in zip(self.__slots__, args, strict=False):
+            if slot[1:] in kwargs:
+                raise TypeError(f"QoSProfile() got multiple values for argument '{slot[1:]}'")
+            if value is not None:
+                kwargs[slot[1:]] = value
 
     @property
     def history(self) -> HistoryPolicy:
@@ -346,6 +369,15 @@ qos_profile_action_status_default = QoSProfile(
 )
 
 
+def _rosout_profile(depth: int) -> QoSProfile:
+    """The profile of /rosout, except for the depth."""
+    return QoSProfile(depth=depth, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=10))
+
+
+#: For /rosout: what was logged within ten seconds is there for whoever comes.
+_qos_profile_rosout_default = _rosout_profile(1000)
+
+
 class QoSPresetProfiles(Enum):
     """The predefined profiles by name."""
 
@@ -358,6 +390,8 @@ class QoSPresetProfiles(Enum):
     PARAMETER_EVENTS = qos_profile_parameter_events
     ACTION_STATUS_DEFAULT = qos_profile_action_status_default
     BEST_AVAILABLE = qos_profile_best_available
+    if distro.follows("rosout_preset"):
+        ROSOUT_DEFAULT = _qos_profile_rosout_default
 
     @classmethod
     def short_keys(cls) -> list[str]:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
 from rclpy.type_support import check_for_type_support
+
+if not TYPE_CHECKING:
+    __getattr__ = reexport(__name__)
 
 _MsgType = TypeVar("_MsgType")
 

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
+from rclpy.impl.blocks import Block
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
+from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import Generic, ServiceT_co
 from rclpy.qos import QoSProfile
 from rclpy.service_introspection import ServiceIntrospectionState
@@ -16,6 +18,8 @@ from rclpy.service_introspection import ServiceIntrospectionState
 if TYPE_CHECKING:
     from rclpy.impl.typed import ResponseT
     from rclpy.impl.typed import Service as ServiceWith
+else:
+    __getattr__ = reexport(__name__)
 
 # Programs import them from here.
 SrvType = TypeVar("SrvType")
@@ -23,8 +27,10 @@ SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
-class Service(Generic[ServiceT_co]):
+class Service(Block, Generic[ServiceT_co]):
     """Answers the requests of a service; made by `Node.create_service`."""
+
+    _ros_entity = "Service"
 
     def __init__(
         self,

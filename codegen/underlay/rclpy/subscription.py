@@ -5,19 +5,30 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable
 from enum import Enum
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
+from rclpy.impl.blocks import Block
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import Generic, MessageT
 from rclpy.qos import QoSProfile
+from rclpy.subscription_content_filter_options import ContentFilterOptions
+
+if TYPE_CHECKING:
+    from rclpy.impl.interface_protocols import MsgT as MsgT  # noqa: PLC0414 - programs import it from here
+    from rclpy.impl.newer import MessageInfo as MessageInfo  # noqa: PLC0414 - programs import it from here
+else:
+    __getattr__ = reexport(__name__)
 
 MsgType = TypeVar("MsgType")  # programs import it from here
 
 
-class Subscription(Generic[MessageT]):
+class Subscription(Block, Generic[MessageT]):
     """Receives the messages of a topic; made by `Node.create_subscription`."""
+
+    _ros_entity = "Subscription"
 
     class CallbackType(Enum):
         """The arguments of a callback."""
@@ -88,6 +99,28 @@ class Subscription(Generic[MessageT]):
                 "Subscription.__init__(): callback should be either be callable with one argument"
                 "(to get only the message) or two (to get message and message info)"
             )
+
+    @property
+    def is_cft_enabled(self) -> bool:
+        """Whether a content filter is active; InvalidHandle once it is destroyed."""
+        with self.handle:
+            return self.__subscription.is_cft_enabled()
+
+    def set_content_filter(self, filter_expression: str, expression_parameters: list[str]) -> None:
+        """Accept only messages for which an expression is true, from now on; an empty one accepts all.
+
+        :param filter_expression: in the SQL subset of DDS.
+        :param expression_parameters: the texts that `%0` to `%99` stand for.
+        :raises RCLError: for a wrong expression; the filter stays as it was.
+        :raises TypeError: if the parameters are no sequence of texts.
+        """
+        with self.handle:
+            self.__subscription.set_content_filter(filter_expression, expression_parameters)
+
+    def get_content_filter(self) -> ContentFilterOptions:
+        """Return the filter; raises RCLError if there is none."""
+        with self.handle:
+            return ContentFilterOptions(*self.__subscription.get_content_filter())
 
     @property
     def logger_name(self) -> str:

@@ -52,9 +52,9 @@ class Future(Generic[T]):
         if self._exception is not None and not self._exception_fetched:
             print(f"The following exception was never retrieved: {self._exception}", file=sys.stderr)
 
-    def __await__(self) -> Generator[None, None, T]:
+    def __await__(self) -> Generator[Any, None, T]:
         while self._state is _PENDING:
-            yield
+            yield self  # the task that steps the coroutine waits for this
         if self._state is _CANCELLED:
             warnings.warn(
                 "the future that is awaited was cancelled, so `await` returns None: ask `future.cancelled()`",
@@ -213,6 +213,7 @@ class Task(_FutureOf[T]):
             self._handler = handler(*self._args, **self._kwargs)
         self._entity: Any = None  # whose callback it runs; None: a program has created it
         self._executing = False
+        self._awaited: Any = None  # the future that its coroutine waits for; None: it wants the next round
         self._task_lock = threading.Lock()  # held while it runs: no task runs twice at a time
 
     def __call__(self) -> None:
@@ -230,11 +231,29 @@ class Task(_FutureOf[T]):
                 self._executing = False
         finally:
             self._task_lock.release()
+        if self._state is _PENDING:
+            self._wake_later()
+
+    def _wake_later(self) -> None:
+        """Wake the executor when the coroutine can go on. The caller does not run it any more."""
+        executor = self._executor()
+        if executor is not None:
+            poke = executor._queue.poke
+            if self._awaited is None:
+                poke()
+            else:
+                self._awaited._wake_when_done(poke)
+
+    def _can_step(self) -> bool:
+        """Whether a call takes it on: it is not done, nobody runs it, and what it awaits is not pending."""
+        if self._state is not _PENDING or self._executing:
+            return False
+        return self._awaited is None or not self._awaited._pending()
 
     def _step(self) -> None:
         try:
             if inspect.iscoroutine(self._handler):
-                self._handler.send(None)
+                self._wait_for(self._handler.send(None))
                 return
             result = self._handler(*self._args, **self._kwargs)
         except StopIteration as end:
@@ -246,6 +265,10 @@ class Task(_FutureOf[T]):
         else:
             self._handler = None
             self.set_result(result)
+
+    def _wait_for(self, awaited: Any) -> None:
+        """Note what the coroutine has stopped for: a future, or something that only another step can tell."""
+        self._awaited = awaited if isinstance(awaited, Future) else None
 
     def executing(self) -> bool:
         """Return whether it is running right now."""

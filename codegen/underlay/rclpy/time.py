@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Protocol, overload
 
 from rclpy.constants import S_TO_NS
 from rclpy.duration import Duration
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 from .clock_type import ClockType
 
 if TYPE_CHECKING:
+    import datetime
+
     import builtin_interfaces.msg
 
 
@@ -127,6 +130,15 @@ class Time:
         """Convert to builtin_interfaces/msg/Time."""
         seconds, nanoseconds = self.seconds_nanoseconds()
         return _message_class()(sec=seconds, nanosec=nanoseconds)
+
+    def to_datetime(self) -> datetime.datetime:
+        """Convert to local time without a zone; TypeError for steady time, which is no time of day."""
+        import datetime  # late: few programs need it
+
+        distro.uses("to_datetime")
+        if self.clock_type == _rclpy.ClockType.STEADY_TIME:
+            raise TypeError("Steady time has no date: it counts from an arbitrary point")
+        return datetime.datetime.fromtimestamp(self.nanoseconds / S_TO_NS)
 
     @classmethod
     def from_msg(cls, msg: builtin_interfaces.msg.Time, clock_type: ClockType = ClockType.ROS_TIME) -> Time:

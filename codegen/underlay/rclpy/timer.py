@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import threading
 from collections.abc import Callable
+from types import FunctionType
+from typing import TYPE_CHECKING, Any
 
 from rmw_local import timing
 
@@ -11,14 +14,21 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
+from rclpy.impl.blocks import Block
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
 from rclpy.utilities import get_default_context
 
+if TYPE_CHECKING:
+    from rclpy.impl.newer import TimerInfo as TimerInfo  # noqa: PLC0414 - programs import it from here
+else:
+    __getattr__ = reexport(__name__)
 
-class Timer:
+
+class Timer(Block):
     """Calls back every period of its clock; made by `Node.create_timer`. All times in ns.
 
-    :param callback: called without arguments.
+    :param callback: called without arguments, or with a TimerInfo if the annotation of a parameter says so.
     :param callback_group: decides when it may run.
     :param timer_period_ns: the period.
     :param clock: what measures it.
@@ -26,9 +36,11 @@ class Timer:
     :param autostart: False: it runs from the first `reset` on.
     """
 
+    _ros_entity = "Timer"
+
     def __init__(
         self,
-        callback: Callable[[], object] | None,
+        callback: Callable[..., object] | None,
         callback_group: CallbackGroup | None,
         timer_period_ns: int,
         clock: Clock,
@@ -45,6 +57,16 @@ class Timer:
         self.callback = callback
         self.callback_group = callback_group
         self._executor_event = False  # a handler exists that has not yet taken its data
+
+    @property
+    def callback(self) -> Callable[..., object] | None:
+        """The callback."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, value: Callable[..., object] | None) -> None:
+        self._callback = value
+        self._info_parameter = _info_parameter(value)  # the parameter that gets a TimerInfo, if there is one
 
     @property
     def handle(self) -> _rclpy.Timer:
@@ -100,6 +122,22 @@ class Timer:
         """Return how long until it is due (negative: overdue); None if it is stopped."""
         with self.__timer:
             return self.__timer.time_until_next_call()
+
+
+def _info_parameter(callback: Callable[..., object] | None) -> str | None:
+    """The first parameter whose annotation is the class TimerInfo, not its name."""
+    function = getattr(callback, "__func__", callback)
+    try:
+        if callback is None or (
+            isinstance(function, FunctionType) and type not in map(type, function.__annotations__.values())
+        ):
+            return None  # most callbacks: inspect takes longer than to make a timer
+        parameters: Any = inspect.signature(callback).parameters
+    except (TypeError, ValueError, NameError):  # written in C, or with names that only checkers import
+        return None
+    from rclpy.impl.newer import TimerInfo  # late: few programs use it
+
+    return next((each.name for each in parameters.values() if each.annotation is TimerInfo), None)
 
 
 class Rate:

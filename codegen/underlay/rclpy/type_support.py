@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rmw_local.message import is_message_class, is_service_class
 
 from rclpy.exceptions import NoTypeSupportImportedException
+from rclpy.impl.reexports import reexport
+
+if TYPE_CHECKING:
+    from rclpy.impl.interface_protocols import Action as Action  # noqa: PLC0414 - programs import these from here
+    from rclpy.impl.interface_protocols import ActionT as ActionT  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import FeedbackT as FeedbackT  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import GoalT as GoalT  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import Msg as Msg  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import MsgT as MsgT  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import ResultT as ResultT  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import Srv as Srv  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import SrvRequestT as SrvRequestT  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import SrvResponseT as SrvResponseT  # noqa: PLC0414
+    from rclpy.impl.interface_protocols import SrvT as SrvT  # noqa: PLC0414
+else:
+    __getattr__ = reexport(__name__)
 
 _HINT = (
     " This might be a ROS 1 message type but it should be a ROS 2 message type."

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.reexports import reexport
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerGuardCondition
@@ -12,6 +13,8 @@ from rclpy.utilities import timeout_sec_to_nsec
 
 if TYPE_CHECKING:
     from rclpy.impl.typed import MessageT
+else:
+    __getattr__ = reexport(__name__)
 
 
 def wait_for_message(

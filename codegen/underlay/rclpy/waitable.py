@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from rmw_local.ready import ReadySource
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.typed import Generic, T
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
@@ -55,7 +56,7 @@ class NumberOfEntities:
         )
 
 
-class Waitable:
+class Waitable(Generic[T]):
     """A group of entities that is waited for and executed as one; derive from it."""
 
     # The sources of rclpy's own waitables, always the same: executors listen to these and need no wait set.

@@ -20,6 +20,7 @@ from rmw_local.writer import DurableWriter, Writer
 if TYPE_CHECKING:
     from ifgen_runtime.mismatch.limits import WarningLimit
 
+    from rmw_local.content_filter import ContentFilter
     from rmw_local.lockstep.side import Side
     from rmw_local.message import MessageType, ServiceType
     from rmw_local.qos import QosProfile
@@ -175,7 +176,13 @@ class GraphNode:
         self._report_encounters(writer)
         return writer
 
-    def create_reader(self, message_type: MessageType, topic: str, qos: QosProfile) -> Reader:
+    def create_reader(
+        self,
+        message_type: MessageType,
+        topic: str,
+        qos: QosProfile,
+        content_filter: ContentFilter | None = None,
+    ) -> Reader:
         """Join a topic as subscriber; raises TypeConflictError."""
         domain = self.participant.domain
         domain.close_pending()
@@ -185,6 +192,9 @@ class GraphNode:
             resolved = resolve_requested(qos, [writer.qos for writer in place.writers])
             make = _READERS[resolved.lifespan < INFINITE, resolved.queue_length is None]
             reader = make(self, message_type, topic, resolved)
+            if content_filter is not None:  # it has to be there before durable writers replay
+                reader.takes_parcels = False
+                reader.set_filter(content_filter)
             changed = place.add_reader(reader)
         self.announce(reader, changed)
         self._report_encounters(reader)

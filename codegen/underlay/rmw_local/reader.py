@@ -7,6 +7,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
 from rmw_local import observer, timing
+from rmw_local.message import DecodeError
 from rmw_local.notices import say
 from rmw_local.qos import INFINITE
 from rmw_local.ready import ReadySource
@@ -14,20 +15,22 @@ from rmw_local.status import DeadlineStatus, LivelinessChangedStatus, Status
 from rmw_local.topic import Endpoint
 
 if TYPE_CHECKING:
+    from rmw_local.content_filter import ContentFilter
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
     from rmw_local.mismatch.origin import Origin
     from rmw_local.qos import QosProfile
 
+_MARKED: Final = 6  # the parts of a message with an origin
 _MUCH: Final = 5000
 """The number of messages that Fast DDS keeps for a subscription that keeps all."""
 
 # One message on its way: (CDR bytes, source stamp [ns, system time], number among its publisher's messages,
-# stamp of its arrival [ns, system time]). All readers share it. Bytes rather than objects: an unread message
-# is never decoded, and every reader gets its own object when it takes the message. Bytes that may be of
-# another definition have an Origin as well. A reader that is alone may get a parcel in place of the bytes
-# (`MessageType.pack`).
-Sample = tuple[Any, int, int, int] | tuple[bytes, int, int, int, "Origin"]
+# stamp of its arrival [ns, system time], its publisher's gid). All readers share it. Bytes rather than
+# objects: an unread message is never decoded, and every reader gets its own object when it takes the message.
+# Bytes that may be of another definition have an Origin as well. A reader that is alone may get a parcel in
+# place of the bytes (`MessageType.pack`).
+Sample = tuple[Any, int, int, int, bytes] | tuple[bytes, int, int, int, bytes, "Origin"]
 
 
 class _Closed(deque[Sample]):
@@ -49,6 +52,8 @@ class Reader(ReadySource, Endpoint):
     overwritten = 0
     """The number of messages that newer ones replaced while it was measured."""
     _is_measured = False
+    content_filter: ContentFilter | None = None
+    """Which messages it wants; None: all. `set_filter` changes it."""
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         ReadySource.__init__(self)
@@ -65,7 +70,27 @@ class Reader(ReadySource, Endpoint):
         """Count what is overwritten from now on, or no longer."""
         self._is_measured = is_wanted
         self._is_watched = is_wanted or self._observer is not None
-        self._plain = self.deadline is None and not self._is_watched
+        self._plain = self.deadline is None and not self._is_watched and self.content_filter is None
+
+    def set_filter(self, content_filter: ContentFilter | None) -> None:
+        """Queue only what this accepts, from now on."""
+        if content_filter is not None and self.takes_parcels:
+            self.takes_parcels = False
+            self.refuse_parcels()
+        self.content_filter = content_filter
+        self.measure(self._is_measured)
+
+    def _is_wanted(self, sample: Sample) -> bool:
+        """Whether the filter accepts a message. What cannot be read is dropped where it is taken."""
+        kind, content_filter = self.message_type, self.content_filter
+        try:
+            if len(sample) == _MARKED:
+                message = sample[5].read(sample[0], kind, kind.deserialize, self.node)
+            else:
+                message = kind.deserialize(sample[0])
+        except DecodeError:
+            return True
+        return content_filter is None or (message is not None and content_filter.accepts(message))
 
     def is_ready(self) -> bool:
         """Whether a message waits."""
@@ -83,6 +108,8 @@ class Reader(ReadySource, Endpoint):
 
     def store(self, sample: Sample) -> None:
         """Queue a message; `announce` has to follow when the caller holds no lock any more."""
+        if self.content_filter is not None and not self._is_wanted(sample):
+            return
         if self._is_watched and self.unread == self.qos.queue_length:
             self._note_overwriting()
         self._queue.append(sample)

@@ -96,7 +96,7 @@ class Writer(Endpoint):
             self._note_publication()
         now = timing.time_ns()
         self.last_number = number = next(self._numbers)
-        sample = (data, now, number, now)
+        sample = (data, now, number, now, self.gid)
         for reader in readers:
             reader.accept(sample)
         if self._observer is not None and not readers:
@@ -244,7 +244,7 @@ class DurableWriter(Writer):
         with self._lock:
             now = timing.time_ns()
             self.last_number = number = next(self._numbers)
-            sample = (data, now, number, now)
+            sample = (data, now, number, now, self.gid)
             self._history.append(sample)
             readers = self.readers
             for reader in readers:

@@ -122,22 +122,31 @@ def test_everything_wakes_a_blocked_wait(node: Node, make_executor: Any) -> None
         assert not waiter.is_alive()
 
 
-def test_a_node_may_be_spun_inside_its_own_callback(node: Node) -> None:
-    executor = SingleThreadedExecutor()
+def test_a_node_may_be_spun_inside_its_own_callback_by_another_executor_only(node: Node) -> None:
+    executor, other = SingleThreadedExecutor(), SingleThreadedExecutor()
     executor.add_node(node)
-    node.create_service(Empty, "e", lambda _, response: response, callback_group=ReentrantCallbackGroup())
-    client = node.create_client(Empty, "e", callback_group=ReentrantCallbackGroup())
+    server = rclpy.create_node("server")
+    server.create_service(Empty, "e", lambda _, response: response)
+    client = server.create_client(Empty, "e")
+    other.add_node(server)
     answers: list[Any] = []
 
     def ask() -> None:
         timer.cancel()
+        assert executor.is_spinning
+        with pytest.raises(RuntimeError, match=r"^Executor is already spinning: .*await"):
+            executor.spin_once(timeout_sec=0)
+        with pytest.raises(RuntimeError, match="already spinning"):
+            rclpy.spin_until_future_complete(node, Future(), executor)
         future = client.call_async(Empty.Request())
-        executor.spin_until_future_complete(future, timeout_sec=5)
+        other.spin_until_future_complete(future, timeout_sec=5)
         answers.append(future.result())
 
     timer = node.create_timer(0.001, ask)
     spin_until(executor, lambda: answers)
     assert answers == [Empty.Response()]
+    assert not executor.is_spinning
+    server.destroy_node()
 
 
 def test_an_awaiting_callback_occupies_its_group_only(node: Node) -> None:

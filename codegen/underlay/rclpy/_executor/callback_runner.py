@@ -131,7 +131,7 @@ class CallbackRunner:
         if unfinished is not None:
             coroutine = self._finish(unfinished, entity, group)
             try:
-                coroutine.send(None)
+                awaited = coroutine.send(None)
             except StopIteration:
                 return
             except RuntimeError as error:
@@ -140,8 +140,9 @@ class CallbackRunner:
                 raise
             task = Task(coroutine, executor=executor)
             task._entity = entity
+            task._wait_for(awaited)
             self._tasks.add(task, entity, watch.node)
-            self._queue.poke()
+            task._wake_later()
         elif self._tasks:
             self._queue.poke()
 

@@ -12,6 +12,7 @@ from rclpy._executor.work_finder import Condition, Find, MayExecute, WorkFinder,
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.context import Context
 from rclpy.executors import Executor, SingleThreadedExecutor, Timeout
+from rclpy.impl import distro
 from rclpy.task import Future
 
 if TYPE_CHECKING:
@@ -70,7 +71,10 @@ class OrderedFinder(WorkFinder):
         return (yield from super().find(timeout_sec, nodes, condition, may_execute))
 
     def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
-        for self._resumed in reversed(list(super()._runnable_tasks(nodes))):
+        tasks = list(super()._runnable_tasks(nodes))
+        if not distro.follows("task_order"):
+            tasks.reverse()
+        for self._resumed in tasks:
             yield self._resumed
 
 

@@ -20,6 +20,7 @@ from ifgen_runtime.errors import ServerGoneError
 from rmw_local import timing
 from rmw_local.ready import Listener
 
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.rcl.topics import message_info
 
@@ -188,16 +189,27 @@ class TimerWatch(Watch):
         return self.is_ready()
 
     def take(self) -> Any:
-        """Start the timer's next period; None if the handle is gone."""
+        """Start the timer's next period; None if the handle is gone, or another thread has cancelled it."""
         if not self.source.pointer:
             return None
-        self.source.call_timer()
-        return True
+        try:
+            return self.source.call_and_time()
+        except RCLError:
+            return None
 
     def call(self, taken: Any, executor: Executor) -> Coroutine[Any, Any, Any] | None:
         """Call the timer's callback."""
-        callback = self.entity.callback
-        return _unfinished(callback(), callback)
+        timer = self.entity
+        callback = timer._callback
+        if timer._info_parameter is None:
+            return _unfinished(callback(), callback)
+        distro.uses("TimerInfo")
+        from rclpy.impl.newer import TimerInfo  # late: few programs use it
+
+        info = TimerInfo(
+            expected_call_time=taken[0], actual_call_time=taken[1], clock_type=timer.clock.clock_type
+        )
+        return _unfinished(callback(**{timer._info_parameter: info}), callback)
 
 
 class SubscriptionWatch(Watch):

@@ -11,6 +11,7 @@ from rmw_local import timing
 from rclpy._executor.callback_runner import TaskList, Work
 from rclpy._executor.ready_queue import ReadyQueue
 from rclpy._executor.watch import Watch
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.utilities import timeout_sec_to_nsec
 
@@ -126,12 +127,15 @@ class WorkFinder:
         self._queue.watch(nodes)
 
     def _runnable_tasks(self, nodes: list[Node] | None) -> Iterator[Work]:
-        """Yield the tasks that are not done, newest first; then forget those that are."""
+        """Yield the tasks that are not done, newest first as Jazzy does; then forget those that are."""
         used = self._nodes if nodes is None else nodes
         some_done = False  # most rounds find only tasks that wait
-        for work in reversed(self._tasks[:]):
+        tasks = self._tasks[:]
+        if not distro.follows("task_order"):
+            tasks.reverse()
+        for work in tasks:
             task, _, node = work
-            if task._pending() and not task.executing() and (node is None or node in used):
+            if task._can_step() and (node is None or node in used):
                 yield work
             some_done = some_done or not task._pending()
         if some_done:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalStatus
 
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
 from rclpy.impl.typed import ActionT_co, Generic
@@ -109,6 +110,7 @@ class ServerGoalHandle(Generic[ActionT_co]):
         self._action_server = action_server
         self._goal_info = goal_info
         self._goal_request = goal_request
+        self._has_callback = False  # whose return value is the result; else it is set when the goal ends
         # A state and its publication belong together. Comes before the lock of the server's handle.
         self._lock = threading.Lock()
 
@@ -157,18 +159,31 @@ class ServerGoalHandle(Generic[ActionT_co]):
             if self._goal_handle is None:
                 return
             self._goal_handle.update_goal_state(event)
-            self._action_server._handle.publish_status()
+            self._action_server._publish_status()
             if not self._goal_handle.is_active():
-                self._action_server.notify_goal_done()
+                try:
+                    self._action_server.notify_goal_done()
+                except _rclpy.RCLError:
+                    if self._action_server._handle.pointer:
+                        raise  # else another thread has destroyed the server
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle[ActionT_co]], Any] | None = None) -> None:
         """Let the executor run a callback (None: the server's own), also if the goal is being cancelled.
 
+        Without any callback, the program ends the goal itself.
+
         :raises RCLError: if the goal executes already or has ended.
         """
         if not self.is_cancel_requested:
+            if distro.follows("second_execute") and self.status != GoalStatus.STATUS_ACCEPTED:
+                return
             self._update_state(_rclpy.GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
+
+    def executing(self) -> None:
+        """Let the goal execute without a callback; raises RCLError if it executes already or has ended."""
+        distro.uses("executing")
+        self._update_state(_rclpy.GoalEvent.EXECUTE)
 
     def publish_feedback(
         self: ServerGoalHandle[Action[Any, Any, FeedbackT, Any, Any]], feedback: FeedbackT
@@ -180,23 +195,37 @@ class ServerGoalHandle(Generic[ActionT_co]):
         action_type = self._action_server.action_type
         if not isinstance(feedback, action_type.Feedback):
             raise wrong_class(feedback, action_type.Feedback)
+        if distro.follows("late_feedback") and self.status != GoalStatus.STATUS_EXECUTING:
+            self._action_server._logger.warning("Feedback of a goal that does not execute is dropped")
+            return
         with self._lock:
             if self._goal_handle is None:
                 return
             message = action_type.Impl.FeedbackMessage(goal_id=self.goal_id, feedback=feedback)
-            self._action_server._handle.publish_feedback(message)
+            self._action_server._publish_feedback(message)
 
-    def succeed(self) -> None:
+    # With a response, the three ways to end a goal set its result. Otherwise that is the return value of the
+    # execute callback, or an empty one if none was called. Any thread may call them.
+
+    def succeed(self, response: Any = None) -> None:
         """End the goal as succeeded; raises RCLError unless it executes or is being cancelled."""
-        self._update_state(_rclpy.GoalEvent.SUCCEED)
+        self._end(_rclpy.GoalEvent.SUCCEED, response)
 
-    def abort(self) -> None:
+    def abort(self, response: Any = None) -> None:
         """End the goal as aborted; raises RCLError unless it executes or is being cancelled."""
-        self._update_state(_rclpy.GoalEvent.ABORT)
+        self._end(_rclpy.GoalEvent.ABORT, response)
 
-    def canceled(self) -> None:
+    def canceled(self, response: Any = None) -> None:
         """End the goal as cancelled; raises RCLError unless it is being cancelled."""
-        self._update_state(_rclpy.GoalEvent.CANCELED)
+        self._end(_rclpy.GoalEvent.CANCELED, response)
+
+    def _end(self, event: _rclpy.GoalEvent, result: Any) -> None:
+        server = self._action_server
+        if result is not None and not isinstance(result, server.action_type.Result):
+            raise wrong_class(result, server.action_type.Result)
+        self._update_state(event)
+        if result is not None or not self._has_callback:
+            server._keep_result(self, server.action_type.Result() if result is None else result)
 
     def destroy(self) -> None:
         """Let the server forget the goal; what is done with the handle afterwards has no effect."""

@@ -16,7 +16,7 @@ from unique_identifier_msgs.msg import UUID
 from rclpy.action._goals import ClientGoalHandle as ClientGoalHandle  # noqa: PLC0414 - programs import it from here
 from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
-from rclpy.impl import blocking
+from rclpy.impl import blocking, distro
 from rclpy.impl.blocking import wait_for_graph
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
@@ -33,8 +33,10 @@ if TYPE_CHECKING:
     from action_msgs.srv import CancelGoal
 
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.clock import Clock
     from rclpy.impl.typed import Action, FeedbackMessageT, GoalT, ResponseT, Service, T
     from rclpy.node import Node
+    from rclpy.service_introspection import ServiceIntrospectionState
 
     class _SendGoalOptions(TypedDict, Generic[FeedbackMessageT], total=False):
         feedback_callback: Callable[[FeedbackMessageT], object] | None
@@ -57,7 +59,7 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
 
     :param node: the node it belongs to.
     :param action_type: the class of the action.
-    :param action_name: its name; expanded and remapped part by part.
+    :param action_name: its name; expanded, and remapped as a topic is.
     :param callback_group: None for the node's default one.
     :raises ValueError: for a bad name, or after a shutdown.
     :raises AttributeError: if the type is no ROS interface.
@@ -75,7 +77,10 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
         feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - immutable in effect; upstream's default
         status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+        enable_feedback_msg_optimization: bool = False,
     ) -> None:
+        if enable_feedback_msg_optimization:  # it changes nothing that a program can see
+            distro.uses("feedback_filter")
         super().__init__(node.default_callback_group if callback_group is None else callback_group)
         check_for_type_support(action_type)
         self._node = node
@@ -338,6 +343,19 @@ class ActionClient(ActionWaitable, Generic[ActionT_co]):
                 self._goal_handles.pop(key, None)  # another thread may be at a later status array
 
     # The server
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Switch the events about the traffic of the three services, stamped with `clock`."""
+        distro.uses("introspection")
+        with self._client_handle:
+            self._client_handle.configure_introspection(
+                clock.handle, service_event_qos_profile.get_c_qos_profile(), introspection_state
+            )
 
     def server_is_ready(self) -> bool:
         """Whether there is a server with all of its services and topics."""

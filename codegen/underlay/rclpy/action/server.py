@@ -13,7 +13,9 @@ from action_msgs.msg import GoalInfo, GoalStatus
 
 from rclpy.action._goals import ServerGoalHandle as ServerGoalHandle  # noqa: PLC0414 - programs import it from here
 from rclpy.action._waiting import ActionWaitable
+from rclpy.exceptions import InvalidHandle
 from rclpy.executors import await_or_execute
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.logging_severity import LoggingSeverity as _LoggingSeverity
 from rclpy.impl.messages import wrong_return
@@ -27,8 +29,10 @@ from rclpy.type_support import check_for_type_support
 
 if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
+    from rclpy.clock import Clock
     from rclpy.impl.typed import ActionClass, GoalT, MaybeAsync, ResultT
     from rclpy.node import Node
+    from rclpy.service_introspection import ServiceIntrospectionState
 
 if not TYPE_CHECKING:
     __getattr__ = reexport(__name__)
@@ -37,6 +41,8 @@ ServerGoalHandle.__module__ = __name__  # where programs know it from
 
 RCLError = _rclpy.RCLError
 GoalEvent = _rclpy.GoalEvent
+
+_RESULT_TIMEOUT = 10 if distro.follows("result_timeout") else 900  # [s]
 
 
 class GoalResponse(Enum):
@@ -75,8 +81,9 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
 
     :param node: the node it belongs to.
     :param action_type: the class of the action.
-    :param action_name: its name; expanded and remapped part by part.
+    :param action_name: its name; expanded, and remapped as a topic is.
     :param execute_callback: called with the ServerGoalHandle of a goal to execute; returns the Result.
+        Without one, the program ends each goal by `succeed`, `abort` or `canceled`.
     :param callback_group: None for the node's default one. Execute callbacks are tasks and belong to none.
     :param goal_callback: called with a goal; returns a GoalResponse.
     :param handle_accepted_callback: called with a ServerGoalHandle afterwards; may defer `execute`.
@@ -92,7 +99,7 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
         node: Node,
         action_type: ActionClass[ActionT_co, GoalT, ResultT],
         action_name: str,
-        execute_callback: Callable[[ServerGoalHandle[ActionT_co]], MaybeAsync[ResultT]],
+        execute_callback: Callable[[ServerGoalHandle[ActionT_co]], MaybeAsync[ResultT]] | None = None,
         *,
         callback_group: CallbackGroup | None = None,
         goal_callback: Callable[[GoalT], MaybeAsync[GoalResponse]] | None = default_goal_callback,
@@ -105,13 +112,15 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
         feedback_pub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 - upstream's default
         status_pub_qos_profile: QoSProfile = qos_profile_action_status_default,
-        result_timeout: float = 900,
+        result_timeout: float = _RESULT_TIMEOUT,
     ) -> None:
         super().__init__(node.default_callback_group if callback_group is None else callback_group)
         self.register_handle_accepted_callback(handle_accepted_callback)
         self.register_goal_callback(goal_callback)
         self.register_cancel_callback(cancel_callback)
-        self.register_execute_callback(execute_callback)
+        self._execute_callback: Callable[[ServerGoalHandle[ActionT_co]], Any] | None = None
+        if execute_callback is not None:
+            self.register_execute_callback(execute_callback)
 
         check_for_type_support(action_type)
         self._node = node
@@ -179,14 +188,13 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
             self._debug("New goal rejected: {0}", goal_id)
             return
         self._debug("New goal accepted: {0}", goal_id)
-        self._handle.publish_status()
+        self._publish_status()
         try:
             await await_or_execute(self._handle_accepted_callback, goal_handle)
         except Exception:
             if goal_handle.status == GoalStatus.STATUS_ACCEPTED:  # nobody executes it now
                 goal_handle._update_state(GoalEvent.EXECUTE)
                 goal_handle.abort()
-                self._result_futures[key_of(goal_handle.goal_id)].set_result(self._aborted())
             raise
 
     def _aborted(self) -> Any:
@@ -256,7 +264,12 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
             )
         else:
             response = self._aborted()
-        future.set_result(response)
+        self._conclude(future, response)
+
+    def _conclude(self, future: Future, response: Any) -> None:
+        """Keep the response to those who ask for the result of a goal, unless there is one already."""
+        if not future.done():
+            future.set_result(response)
         with suppress(ValueError):  # the goal has expired, or the server is destroyed
             self.remove_future(future)  # it is kept for a while, and executors look at every future there is
 
@@ -345,14 +358,19 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
         """Answer requests, call the goal, accepted and cancel callbacks, forget goals that have expired."""
-        if "goal" in taken_data:
-            await self._execute_goal_request(taken_data["goal"])
-        if "cancel" in taken_data:
-            await self._execute_cancel_request(taken_data["cancel"])
-        if "result" in taken_data:
-            await self._execute_get_result_request(taken_data["result"])
-        if "expired" in taken_data:
-            await self._execute_expire_goals(taken_data["expired"])
+        try:
+            if "goal" in taken_data:
+                await self._execute_goal_request(taken_data["goal"])
+            if "cancel" in taken_data:
+                await self._execute_cancel_request(taken_data["cancel"])
+            if "result" in taken_data:
+                await self._execute_get_result_request(taken_data["result"])
+            if "expired" in taken_data:
+                await self._execute_expire_goals(taken_data["expired"])
+        except (RCLError, InvalidHandle):
+            if self._handle.pointer:
+                raise
+            self._logger.warning(f"action server '{self._handle.name}' was destroyed during a request")
 
     # For goal handles
 
@@ -361,14 +379,53 @@ class ActionServer(ActionWaitable, Generic[ActionT_co]):
         goal_handle: ServerGoalHandle[Any],
         execute_callback: Callable[[ServerGoalHandle[Any]], Any] | None,
     ) -> None:
-        """Let the node's executor run a callback for a goal; None for the server's own."""
+        """Let the node's executor run a callback for a goal; None for the server's own, if there is one."""
         callback = self._execute_callback if execute_callback is None else execute_callback
+        if callback is None:
+            return
+        goal_handle._has_callback = True
         executor: Any = self._node.executor
         executor.create_task(self._execute_goal, callback, goal_handle)
+
+    def _keep_result(self, goal_handle: ServerGoalHandle[Any], result: Any) -> None:
+        """Answer with this result to those who ask for that of a goal."""
+        future = self._result_futures.get(key_of(goal_handle.goal_id))
+        if future is not None:
+            kind = self._action_type.Impl.GetResultService.Response
+            self._conclude(future, kind(status=goal_handle.status, result=result))
 
     def notify_goal_done(self) -> None:
         """Start the time after which results of goals that have ended expire."""
         self._handle.notify_goal_done()
+
+    def _publish_status(self) -> None:
+        """Publish the states of all goals."""
+        try:
+            self._handle.publish_status()
+        except RCLError:
+            if self._handle.pointer:
+                raise  # else another thread has destroyed the server
+
+    def _publish_feedback(self, message: Any) -> None:
+        """Publish feedback about a goal."""
+        try:
+            self._handle.publish_feedback(message)
+        except RCLError:
+            if self._handle.pointer:
+                raise  # else another thread has destroyed the server
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Switch the events about the traffic of the three services, stamped with `clock`."""
+        distro.uses("introspection")
+        with self._handle:
+            self._handle.configure_introspection(
+                clock.handle, service_event_qos_profile.get_c_qos_profile(), introspection_state
+            )
 
     # Callbacks
 

@@ -2,6 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from rclpy.impl.reexports import reexport
+
 from .events_executor import EventsExecutor
+
+if not TYPE_CHECKING:
+    __getattr__ = reexport(__name__)
 
 __all__ = ["EventsExecutor"]

@@ -6,6 +6,8 @@ import importlib
 from collections.abc import Callable
 from typing import Any
 
+from rclpy.impl import distro
+
 _WAITABLE = {"NumberOfEntities": "rclpy.waitable", "Waitable": "rclpy.waitable"}
 _TYPE_CHECK = {"check_is_valid_srv_type": "rclpy.type_support"}
 
@@ -44,14 +46,15 @@ def reexport(module: str) -> Callable[[str], Any]:
     """A module's `__getattr__`, which finds a name that the module passes on when somebody asks for it.
 
     Homes within rclpy are imported at once: programs reach those modules, too, because upstream imports them.
+    Names of newer distributions are found as well (`rclpy.impl.distro`).
     """
-    homes = _HOMES[module]
+    homes = _HOMES.get(module, {})
     for each in homes.values():
         if each.startswith("rclpy."):
             importlib.import_module(each)
 
     def find(name: str) -> Any:
-        home, _, name_at_home = homes.get(name, "").partition(":")
+        home, _, name_at_home = (homes.get(name) or distro.home_of(module, name)).partition(":")
         if not home:
             raise AttributeError(f"module {module!r} has no attribute {name!r}")
         return getattr(importlib.import_module(home), name_at_home or name)

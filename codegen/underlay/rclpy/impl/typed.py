@@ -1,7 +1,7 @@
-"""Types of rclpy for type checkers only.
+"""Types of rclpy for type checkers, and the classes of rclpy that take type arguments at run time.
 
-Upstream's classes are not generic in Jazzy: evaluating `Publisher[Point]` raises TypeError. Here it does too,
-so what runs on ours runs on the real one.
+Jazzy's classes take none. Those of newer ROS do, with other parameters than ours have for type checkers:
+`Client[Request, Response]`.
 """
 
 from __future__ import annotations
@@ -50,6 +50,31 @@ if TYPE_CHECKING:
     MessageCallback: TypeAlias = Callable[[T], object]
     InfoCallback: TypeAlias = Callable[[T, MessageInfo], object]
 else:
+    from types import GenericAlias
+
+    from rclpy.impl import distro
+
+    _PARAMETERS = {"ActionClient": 3, "ActionServer": 3, "Client": 2, "Service": 2}
+    _PARAMETERS |= {"ClientGoalHandle": 3, "ServerGoalHandle": 3}
+
+    class Generic:
+        """The base of what newer ROS lets programs write with type arguments."""
+
+        def __class_getitem__(cls, arguments):
+            """Return the class with its arguments, which mean nothing at run time."""
+            if cls is Generic:  # a base in rclpy itself, with parameters for type checkers
+                return cls
+            distro.uses("generics")
+            arguments = arguments if isinstance(arguments, tuple) else (arguments,)
+            expected = next(
+                (_PARAMETERS[base.__name__] for base in cls.__mro__ if base.__name__ in _PARAMETERS), 1
+            )
+            if len(arguments) != expected:
+                few = "few" if len(arguments) < expected else "many"
+                raise TypeError(
+                    f"Too {few} arguments for {cls}; actual {len(arguments)}, expected {expected}"
+                )
+            return GenericAlias(cls, arguments)
 
     class PlainBase:
         """Stands for a base whose parameters only type checkers see."""
@@ -61,5 +86,4 @@ else:
             """Return the base."""
             return self._base
 
-    Generic = PlainBase(object)
     T = MessageT = ServiceT_co = ActionT_co = None

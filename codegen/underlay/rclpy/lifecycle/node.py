@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lifecycle_msgs import msg, srv
 
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_return
 from rclpy.impl.reexports import reexport
@@ -119,6 +120,8 @@ class LifecycleNodeMixin(ManagedEntity):
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Go to finalized."""
         transition = _SHUTDOWN_FROM.get(self._state_machine.current_state[1])
+        if transition is None and distro.follows("trigger"):
+            transition = msg.Transition.TRANSITION_UNCONFIGURED_SHUTDOWN  # which is refused with its name
         if transition is None:
             raise _rclpy.RCLError("Shutdown transtion not possible")
         return self.__change_state(transition)
@@ -220,6 +223,13 @@ class LifecycleNodeMixin(ManagedEntity):
     def __change_state(self, transition_id: int) -> TransitionCallbackReturn:
         machine = self.__checked_machine()
         state_id, label = machine.current_state
+        if distro.follows("trigger") and all(
+            each[0] != transition_id for each in machine.available_transitions
+        ):
+            text = f"Unable to start transition {transition_id} from current state {machine.current_state}"
+            node: Any = self
+            node.get_logger().error(text)
+            return TransitionCallbackReturn.ERROR
         before = LifecycleState(label=label, state_id=state_id)
         machine.trigger_transition_by_id(transition_id, True)
         answer = self.__execute_callback(before)

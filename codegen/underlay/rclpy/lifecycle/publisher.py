@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from rclpy.impl import typed
+from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import MessageT
 from rclpy.publisher import MsgType as MsgType  # noqa: PLC0414 - programs import it from here
 from rclpy.publisher import Publisher
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     _PublisherOf = Publisher
 else:
     _PublisherOf = typed.PlainBase(Publisher)
+    __getattr__ = reexport(__name__)
 
 
 class LifecyclePublisher(SimpleManagedEntity, _PublisherOf[MessageT]):

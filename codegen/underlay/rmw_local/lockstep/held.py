@@ -38,7 +38,7 @@ class HeldWriter(Writer):
         if self._timed:
             self._note_publication()
         now = timing.time_ns()
-        sample = (data, now, next(self._numbers), now)
+        sample = (data, now, next(self._numbers), now, self.gid)
         _side(self).hold(self.node.full_name, self._arrive, sample)
         if self.remote_sink is not None:
             self.remote_sink.accept(sample)

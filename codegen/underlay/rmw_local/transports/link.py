@@ -262,7 +262,7 @@ class Link:
                 return  # too old
             writer.note_life()
         # Otherwise nobody has announced this publisher: some tools send without.
-        reader.accept((data, stamp, number, now))
+        reader.accept((data, stamp, number, now, gid))
 
 
 class _PublicationSink:

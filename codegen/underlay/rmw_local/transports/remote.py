@@ -316,4 +316,4 @@ class Adapted:
                 return  # too old
             writer.note_life()
             end = marked
-        end.accept((data, stamp, number, now))
+        end.accept((data, stamp, number, now, gid))

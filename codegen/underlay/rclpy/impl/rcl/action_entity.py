@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from rmw_local.message import message_type, service_type
 
-from .clock import Timer
+from .clock import Clock, Timer
 from .handle import Destroyable, RCLError
 from .names import as_c_string, rclpy_get_validation_error_for_full_topic_name
+from .service_introspection import ServiceIntrospectionState
 from .services import Client, Service
 from .topics import Publisher, Subscription
 
@@ -41,6 +42,7 @@ class ActionEntity(Destroyable):
         self._must_be_usable(node, action_type, action_name)
         self._node = node
         self._name = action_name
+        self._full_name = node.resolve_name(action_name, is_service=False)
         for part in (action_type.Impl.SendGoalService, action_type.Impl.GetResultService):
             service_type(part).action = action_type
         message_type(action_type.Impl.FeedbackMessage).action = action_type
@@ -57,7 +59,7 @@ class ActionEntity(Destroyable):
     def _own(self, part_class: Any, interface: Any, name: str, qos_profile: object) -> Any:
         """Create a hidden part; if that fails, nothing of the whole remains."""
         try:
-            part = part_class(self._node, interface, _part_name(self._name, name), qos_profile)
+            part = part_class(self._node, interface, _part_name(self._full_name, name), qos_profile)
         except RCLError as error:
             self._on_destroy()
             reason = str(error).partition(": ")[2]
@@ -79,6 +81,15 @@ class ActionEntity(Destroyable):
         self._indices = [
             (kind, getattr(wait_set, f"add_{kind}")(handle)) for kind, handle in self._waited_for
         ]
+
+    def configure_introspection(
+        self, clock: Clock, pyqos_service_event_pub: object, introspection_state: ServiceIntrospectionState
+    ) -> None:
+        """Switch the events about what the three services send and receive."""
+        self._must_live("Failed to configure action introspection")
+        for part in self._parts:
+            if isinstance(part, Client | Service):
+                part.configure_introspection(clock, pyqos_service_event_pub, introspection_state)
 
     @property
     def handles(self) -> tuple[Any, ...]:
@@ -111,16 +122,18 @@ class ActionEntity(Destroyable):
 
 
 def _part_name(action_name: str, part: str) -> str:
-    """Return the name of a hidden service or topic; it is expanded and remapped like any other."""
+    """Return the name of a hidden service or topic; it is remapped like any other."""
     return f"{action_name}/_action/{part}"
 
 
 def _name_error(node: Node, action_name: str) -> str | None:
+    """The reason why an action cannot have this name, expanded and remapped as that of a topic."""
     if not action_name:
         return "invalid empty action name"
     try:
+        full_name = node.resolve_name(action_name, is_service=False)
         # The longest of the five names: if this one is short enough, all are.
-        full_name = node.resolve_name(_part_name(action_name, "cancel_goal"), is_service=True)
+        full_name = node.resolve_name(_part_name(full_name, "cancel_goal"), is_service=True)
     except ValueError as error:
         return str(error)
     error_of_remapped = rclpy_get_validation_error_for_full_topic_name(full_name)

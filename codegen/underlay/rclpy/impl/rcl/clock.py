@@ -9,8 +9,10 @@ from typing import Protocol, SupportsInt, TypedDict
 from rmw_local import timing
 from rmw_local.ready import ReadySource
 
+from rclpy.impl import distro
+
 from .context import Context
-from .handle import CONTEXT_NOT_VALID, Destroyable, RCLError, Unpicklable, as_bool
+from .handle import CONTEXT_NOT_VALID, Destroyable, RCLError, TimerCancelledError, Unpicklable, as_bool
 from .structs import ExtensionEnum
 
 _INT64 = range(-(2**63), 2**63)
@@ -277,6 +279,20 @@ class Timer(Destroyable, ReadySource):
             missed = (now - following) // self._period + 1 if self._period else 0
             following = following + missed * self._period if self._period else now
         self._next_call = following
+
+    def call_timer_with_info(self) -> dict[str, int]:
+        """Do what `call_timer` does; returns when it was due and when it was called."""
+        distro.uses("call_timer_with_info")
+        expected, actual = self.call_and_time()
+        return {"expected_call_time": expected, "actual_call_time": actual}
+
+    def call_and_time(self) -> tuple[int, int]:
+        """Do what `call_timer` does; returns when it was due and when it was called."""
+        if self._canceled:
+            raise TimerCancelledError("failed to call timer: timer is canceled")
+        expected = self._next_call
+        self.call_timer()
+        return expected, self._last_call
 
     def cancel_timer(self) -> None:
         """Stop it until `reset_timer`."""

@@ -28,7 +28,7 @@ _Pairs = Iterable[tuple[str, str]]
 
 _P = TypeVar("_P")  # a topic or a service
 
-_PUBLISHER, _SUBSCRIPTION = 1, 2
+_PUBLISHER, _SUBSCRIPTION, _CLIENT, _SERVER = 1, 2, 3, 4
 _EMPTY, _INVALID = 1, 2  # numbers that rcl puts into its texts
 _FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
 
@@ -196,6 +196,18 @@ def rclpy_get_subscriptions_info_by_topic(
     return [_info(end, _SUBSCRIPTION) for end in ends if end.name == topic_name]
 
 
+def rclpy_get_clients_info_by_service(node: Node, service_name: str) -> list[dict[str, Any]]:
+    """Return the keyword arguments of a ServiceEndpointInfo for each client of a full service name."""
+    graph = _Snapshot(node, "Failed to get information by service for clients")
+    return [_service_info(each, _CLIENT) for each in graph.clients if each.name == service_name]
+
+
+def rclpy_get_servers_info_by_service(node: Node, service_name: str) -> list[dict[str, Any]]:
+    """Return the keyword arguments of a ServiceEndpointInfo for each server of a full service name."""
+    graph = _Snapshot(node, "Failed to get information by service for servers")
+    return [_service_info(each, _SERVER) for each in graph.servers if each.name == service_name]
+
+
 class _End(NamedTuple):
     """One end of a topic, or of a DDS topic; services have two of these."""
 
@@ -251,10 +263,28 @@ def _part(endpoint: ServiceEndpoint, kind: MessageType) -> MessageType:
     return known.request if kind.name == known.request.name else known.response
 
 
+def _service_info(end: ServiceEndpoint, endpoint_type: int) -> dict[str, Any]:
+    prefix, _, digits = end.service_type.type_hash.partition("_")
+    version, value = (int(prefix.removeprefix("RIHS")), bytes.fromhex(digits)) if digits else (0, bytes(32))
+    return {
+        "node_name": end.node.name,
+        "node_namespace": end.node.namespace,
+        "service_type": end.service_type.name,
+        "service_type_hash": {"version": version, "value": value},
+        "endpoint_type": endpoint_type,
+        "endpoint_count": 1,
+        "endpoint_gids": [list(end.gid)],
+        "qos_profiles": [_visible_qos(end.qos.reader)],
+    }
+
+
+def _visible_qos(qos: QosProfile) -> dict[str, Any]:
+    """A profile without the history, which DDS does not report, because it concerns no other endpoint."""
+    return {**profile_dict(qos), "depth": 0, "history": HISTORY_UNKNOWN}
+
+
 def _info(end: _End, endpoint_type: int) -> dict[str, Any]:
     version, value = end.kind.type_hash_value
-    # DDS does not report the history, because it concerns no other endpoint.
-    qos = {**profile_dict(end.qos), "depth": 0, "history": HISTORY_UNKNOWN}
     return {
         "node_name": end.endpoint.node.name,
         "node_namespace": end.endpoint.node.namespace,
@@ -262,7 +292,7 @@ def _info(end: _End, endpoint_type: int) -> dict[str, Any]:
         "topic_type_hash": {"version": version, "value": value},
         "endpoint_type": endpoint_type,
         "endpoint_gid": list(end.endpoint.gid),
-        "qos_profile": qos,
+        "qos_profile": _visible_qos(end.qos),
     }
 
 

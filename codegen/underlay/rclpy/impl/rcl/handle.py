@@ -41,6 +41,10 @@ class UnknownROSArgsError(RuntimeError):
     """There are unknown ROS arguments; its text is their list."""
 
 
+class TimerCancelledError(RCLError):
+    """A timer was called that is stopped."""
+
+
 class NotImplementedError(builtins.NotImplementedError):
     """Upstream's extension has a separate class for this."""
 

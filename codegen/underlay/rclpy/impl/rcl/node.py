@@ -19,6 +19,7 @@ from .names import (
     rclpy_get_validation_error_for_namespace,
     rclpy_get_validation_error_for_node_name,
 )
+from .qos import profile_of
 from .rosout import rosout_connect
 from .rules import RemapKind, RemapRule, remapped_name, remapped_topic
 
@@ -39,6 +40,7 @@ class Node(Destroyable):
         cli_args: list[str] | None,
         use_global_arguments: bool,
         enable_rosout: bool,
+        rosout_qos_profile: object = None,
     ) -> None:
         super().__init__()
         if not isinstance(context, Context):
@@ -64,7 +66,8 @@ class Node(Destroyable):
             name, namespace, context.arguments.enclave
         )
         self._closers: list[Callable[[], None]] = []
-        if as_bool(enable_rosout, "enable_rosout") and (disconnect := rosout_connect(self)) is not None:
+        rosout_qos = None if rosout_qos_profile is None else profile_of(rosout_qos_profile)
+        if as_bool(enable_rosout, "enable_rosout") and (disconnect := rosout_connect(self, rosout_qos)):
             self.at_destruction(disconnect)
 
     def at_destruction(self, close: Callable[[], None]) -> None:

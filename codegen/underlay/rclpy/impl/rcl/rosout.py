@@ -54,7 +54,7 @@ def _here() -> _Registry:
     return registry
 
 
-def rosout_connect(node: Node) -> Callable[[], None] | None:
+def rosout_connect(node: Node, qos: QosProfile | None = None) -> Callable[[], None] | None:
     """Let the node's logger publish on /rosout; returns how to end that, None if it is switched off."""
     if not node.context.arguments.rosout_logs:
         return None
@@ -69,7 +69,7 @@ def rosout_connect(node: Node) -> Callable[[], None] | None:
     if writer is not None:
         _warn_of_twins(name)
     else:
-        writer = graph_node.create_writer(message_type(Log), ROSOUT_TOPIC, _QOS)
+        writer = graph_node.create_writer(message_type(Log), ROSOUT_TOPIC, qos or _QOS)
         with registry.lock:
             registry.writers[name] = writer
     return partial(_disconnect, registry, writer)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rmw_local.graph import GraphNode
-from rmw_local.message import DecodeError, message_type
+from rmw_local.message import DecodeError, MessageType, message_type
 from rmw_local.status import Status
+
+from rclpy.impl import distro
 
 from . import structs
 from .clock import rcl_duration_t
@@ -17,6 +19,7 @@ from .qos import profile_of
 from .structs import rcl_publisher_event_type_t, rcl_subscription_event_type_t
 
 if TYPE_CHECKING:
+    from rmw_local.content_filter import ContentFilter
     from rmw_local.mismatch.origin import Origin
 
 
@@ -108,24 +111,34 @@ def rclpy_assert_liveliness(publisher: Publisher) -> None:
     publisher.assert_liveliness()
 
 
-MessageInfo = dict[str, int | None]
+MessageInfo = dict[str, Any]
 # A message (or its bytes), its source stamp [ns, system time], its number among its publisher's messages, the
-# stamp of its arrival [ns, system time].
-Taken = tuple[Any, int, int, int]
+# stamp of its arrival [ns, system time], its publisher's gid.
+Taken = tuple[Any, int, int, int, bytes]
 
 
 class Subscription(SourceHandle, EndpointHandle):
     """Subscribes to one topic. Raises ValueError for a bad name, RCLError for anything else that is wrong."""
 
-    def __init__(self, node: object, pymsg_type: type[Any], topic: str, pyqos_profile: object) -> None:
+    def __init__(
+        self,
+        node: object,
+        pymsg_type: type[Any],
+        topic: str,
+        pyqos_profile: object,
+        content_filter: tuple[str, Sequence[str]] | None = None,
+    ) -> None:
         super().__init__()
         profile, kind = profile_of(pyqos_profile), message_type(pymsg_type)
+        wanted = None
+        if content_filter is not None:
+            wanted = _compiled(kind, *content_filter, failure="Failed to create subscription")
         self._reader = reader = self._open(
             "subscription",
             node,
             topic,
             profile,
-            lambda place, name: place.create_reader(kind, name, profile),
+            lambda place, name: place.create_reader(kind, name, profile, wanted),
             GraphNode.close_reader,
         )
         self._use(reader)
@@ -138,6 +151,24 @@ class Subscription(SourceHandle, EndpointHandle):
     def reader(self) -> Any:
         """The endpoint in the middleware, for the handles of events."""
         return self._reader
+
+    def is_cft_enabled(self) -> bool:
+        """Whether there is a content filter."""
+        return self._reader.content_filter is not None
+
+    def set_content_filter(self, filter_expression: str, expression_parameters: Sequence[str]) -> None:
+        """Replace the content filter; an empty expression removes it. Raises RCLError for a wrong one."""
+        failure = "Failed to set cft expression parameters"
+        self._reader.set_filter(
+            _compiled(self._kind, filter_expression, expression_parameters, failure=failure)
+        )
+
+    def get_content_filter(self) -> tuple[str, list[str]]:
+        """Return expression and parameters; raises RCLError if there is none."""
+        wanted = self._reader.content_filter
+        if wanted is None:
+            raise RCLError("Failed to get cft expression parameters: content filter is not set")
+        return wanted.expression, list(wanted.parameters)
 
     def use_views(self) -> None:
         """Leave sequences of numbers in the bytes that all subscriptions share, from now on."""
@@ -170,11 +201,11 @@ class Subscription(SourceHandle, EndpointHandle):
         if raw:
             return self._raw(sample)
         try:
-            data, stamp, number, arrival = sample
+            data, stamp, number, arrival, gid = sample
         except ValueError:  # it is marked
             return self._take_with_care(*sample)
         try:
-            return self._deserialize(data), stamp, number, arrival
+            return self._deserialize(data), stamp, number, arrival, gid
         except DecodeError:
             self._drops.add()
             return None
@@ -183,26 +214,50 @@ class Subscription(SourceHandle, EndpointHandle):
         """A message as bytes, as all that follow will be."""
         if self._reader.takes_parcels:
             self._reader.refuse_parcels()
-        data, stamp, number, arrival = sample[:4]
-        return bytes(data), stamp, number, arrival
+        data, stamp, number, arrival, gid = sample[:5]
+        return bytes(data), stamp, number, arrival, gid
 
     def _take_with_care(
-        self, data: bytes, stamp: int, number: int, arrival: int, origin: Origin
+        self, data: bytes, stamp: int, number: int, arrival: int, gid: bytes, origin: Origin
     ) -> Taken | None:
         """Read bytes that may be of another definition."""
         message = origin.read(data, self._kind, self._deserialize, self._reader.node)
-        return None if message is None else (message, stamp, number, arrival)
+        return None if message is None else (message, stamp, number, arrival, gid)
+
+
+def _compiled(
+    kind: MessageType, expression: str, parameters: Sequence[str], *, failure: str
+) -> ContentFilter | None:
+    """Compile a content filter; RCLError if it is wrong, TypeError if the parameters are no texts."""
+    from rmw_local.content_filter import (
+        MOST_PARAMETERS,
+        FilterError,
+        compile_filter,
+    )  # late: few programs filter
+
+    texts = list(parameters)
+    if isinstance(parameters, str) or not all(isinstance(each, str) for each in texts):
+        raise TypeError(f"the parameters of a content filter are a list of str, not {parameters!r}")
+    if len(texts) > MOST_PARAMETERS:
+        failure = "Failed to set content_filter_options"
+    try:
+        return compile_filter(kind.cls, expression, texts)
+    except FilterError as error:
+        raise RCLError(f"{failure}: {error}") from None
 
 
 def message_info(taken: Taken) -> MessageInfo:
     """The metadata of a message."""
-    _, stamp, number, arrival = taken
-    return {
+    _, stamp, number, arrival, gid = taken
+    info: MessageInfo = {
         "source_timestamp": stamp,
         "received_timestamp": arrival,  # in one process, delivery happens inside publish
         "publication_sequence_number": number,
         "reception_sequence_number": None,
     }
+    if distro.follows("publisher_gid"):
+        info["publisher_gid"] = {"implementation_identifier": "rmw_local", "data": gid}
+    return info
 
 
 _PublisherEvent = rcl_publisher_event_type_t
