@@ -109,6 +109,7 @@ STREAMS: Final = {
     "ifgen_tools/nodl/commands.py": "click.echo, which is as `print`",
     "ifgen_tools/top": "a screen",
     "ifgen_tools/topic/echo.py": "a line at a time, whoever reads",
+    "libraries/launch/logging.py": "the output of processes, whose reader may have gone",
     "underlay/rmw_local": "notices, in a line each, where no logger is yet",
 }
 """Who goes around `print`, which ruff finds (T20), and why; by file or room below codegen."""
