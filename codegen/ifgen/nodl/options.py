@@ -252,7 +252,7 @@ def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
     node, key = find(root, location)
     shown_location = [str(step) for step in location if isinstance(step, str)]
     inner = {"timers": "a timer", "structs": "a map of structs"} if len(location) > 1 else {}
-    what = inner.get(str(location[0]), "codegen.ifgen")
+    what = inner.get(str(next(iter(location), "")), "codegen.ifgen")
     name = f"`{'.'.join(['codegen.ifgen', *shown_location])}`"
     match error["type"]:
         case "extra_forbidden" if key is not None:
