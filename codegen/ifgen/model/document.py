@@ -44,7 +44,7 @@ def to_text(model: Model) -> str:
     return json.dumps(document(model), indent=1, ensure_ascii=False) + "\n"
 
 
-def plain(value: object) -> Any:
+def plain(value: Any) -> Any:
     """Any value of the model in what JSON knows: the filter `tojson` of templates writes that."""
     match value:
         case bool() | str() | None:
@@ -58,13 +58,17 @@ def plain(value: object) -> Any:
         case Mapping():
             return {str(key): plain(of) for key, of in cast("Mapping[object, object]", value).items()}
         case _:
-            cls: type = type(value)
-            if not dataclasses.is_dataclass(cls):
-                raise TypeError(f"{cls.__name__} is not JSON")
-            members = {name: _member(cls, name, getattr(value, name)) for name in _hints(cls)}
-            if cls is Step:  # most members are of one kind of step only
-                return {name: of for name, of in members.items() if of != _DEFAULTS.get(name, ...)}
-            return members
+            return _object_as_json(value)
+
+
+def _object_as_json(value: object) -> dict[str, Any]:
+    cls: type = type(value)
+    if not dataclasses.is_dataclass(cls):
+        raise TypeError(f"{value!r} is not JSON")
+    members = {name: _member(cls, name, getattr(value, name)) for name in _hints(cls)}
+    if isinstance(value, Step):  # most members are of one kind of step only
+        return {name: of for name, of in members.items() if of != _DEFAULTS.get(name, ...)}
+    return members
 
 
 def _member(cls: type, name: str, value: Any) -> Any:

@@ -163,7 +163,7 @@ class _Outputs:
         import_folders = {target.name: target.import_folder for target in resolved.targets if target.nodes}
         model = build_model(resolved).model
         packages = [package for package in model.packages if package.generate]
-        variables = {"model": model, "options": {}}
+        variables: dict[str, object] = {"model": model, "options": dict[str, object]()}
         self._planned = plan_outputs(
             custom.outputs, packages, import_folders, variables, partial=custom.partial
         )

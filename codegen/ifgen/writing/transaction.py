@@ -53,7 +53,10 @@ class Stage:
         """Replace files, in order, by contents that were put here, as `apply_all` does."""
         apply_all([(self, changes)])
 
-    def _apply(self, changes: Sequence[tuple[Path, Path | None]], undo: list[Callable[[], object]]) -> None:
+    def apply_until(
+        self, changes: Sequence[tuple[Path, Path | None]], undo: list[Callable[[], object]]
+    ) -> None:
+        """Make the changes up to one that fails; `undo` grows by the steps that take them back."""
         for i, (path, new) in enumerate(changes):
             _make_folder(path.parent, undo)
             _remember(path, self._made() / f"old{i}", undo)
@@ -83,7 +86,7 @@ def apply_all(stages: Iterable[tuple[Stage, Sequence[tuple[Path, Path | None]]]]
     """
     with _undone_on_failure() as undo:
         for stage, changes in stages:
-            stage._apply(changes, undo)
+            stage.apply_until(changes, undo)
 
 
 @contextmanager

@@ -99,7 +99,11 @@ def _program(target: Target, ask: Callable[[Request], str]) -> Generator:
     except ValueError as error:
         message = _failed(target, f"cannot describe itself: {error}")
         raise InputError([failure(target.span, message)]) from None
-    return replace(found, generate=lambda request: _generate(target, ask(request)))
+
+    def generate(request: Request) -> Response:
+        return _generate(target, ask(request))
+
+    return replace(found, generate=generate)
 
 
 def _generate(target: Target, request: str) -> Response:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from difflib import unified_diff
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Final
+from typing import Any, Final, cast
 
 from ifgen import generators as public
 from ifgen.config.customization import Target
@@ -104,15 +104,14 @@ def _with_unknown_members(target: Target, built: BuiltModel, files: Files) -> It
 
 
 def _with_more(value: Any) -> Any:
-    match value:
-        case dict():
-            members = {key: _with_more(of) for key, of in value.items()}
-            # Descriptions are ROS's own, and the members of some objects are names.
-            return members if "type_description" in value else {"x_later": ["?"], **members}
-        case list():
-            return [_with_more(element) for element in value]
-        case _:
-            return value
+    if isinstance(value, dict):
+        table = cast("dict[str, Any]", value)
+        members = {key: _with_more(of) for key, of in table.items()}
+        # Descriptions are ROS's own.
+        return members if "type_description" in table else {"x_later": ["?"], **members}
+    if isinstance(value, list):
+        return [_with_more(of) for of in cast("Iterable[Any]", value)]
+    return value
 
 
 def _plain_texts(files: Files) -> Iterator[str]:
