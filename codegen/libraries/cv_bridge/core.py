@@ -192,9 +192,8 @@ def _recoloured(image: Any, source: str, wanted: str) -> Any:
 
 def _grey(image: Any) -> Any:
     """Return the luminance of BGR, in the whole numbers of OpenCV."""
-    shift, weights = (15, (3735, 19235, 9798)) if image.dtype == np.uint8 else (14, (1868, 9617, 4899))
-    total = image.astype(np.uint32) @ np.array(weights, np.uint32)
-    return ((total + (1 << (shift - 1))) >> shift).astype(image.dtype)
+    total = image.astype(np.uint32) @ np.array((3735, 19235, 9798), np.uint32)
+    return ((total + (1 << 14)) >> 15).astype(image.dtype)
 
 
 def _sampled(image: Any, source: str) -> tuple[Any, str]:
