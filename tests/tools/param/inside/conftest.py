@@ -9,6 +9,7 @@ import pytest
 import rclpy
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.executors import SingleThreadedExecutor
+from rclpy.logging import LoggingSeverity
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
@@ -30,6 +31,9 @@ def robot() -> Iterator[Node]:
     """/robot/arm, a node without services for parameters, and a hidden one."""
     rclpy.init(args=[])
     node = Node("arm", namespace="/robot", enable_rosout=False)
+    node.get_logger().set_level(
+        LoggingSeverity.ERROR
+    )  # what it refuses is its own log, beside the tool's words
     limits = [FloatingPointRange(from_value=0.0, to_value=2.5, step=0.1)]
     node.declare_parameter(
         "speed", 0.1, ParameterDescriptor(description="in m/s", floating_point_range=limits)
