@@ -50,7 +50,7 @@ def conformance(
     junit: Path | None,
     json_file: Path | None,
 ) -> int:
-    """Hold a program's messages to the bytes of real ROS 2.
+    """Test a program against the bytes of ROS 2.
 
     TESTEE is a command that answers requests on its standard input, as docs/conformance.md describes.
     """

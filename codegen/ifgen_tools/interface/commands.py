@@ -24,7 +24,7 @@ _HEADINGS: Final = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
 @click.group(cls=ToolGroup)
 def interface() -> None:
-    """Look at messages, services and actions that can be found here."""
+    """Look at messages, services and actions."""
 
 
 def _only(command: options.Command) -> options.Command:

@@ -61,7 +61,7 @@ class Counter(Node):
         print(goal_handle.request.number)  # refused: attr-defined, reportAttributeAccessIssue
         goal_handle.publish_feedback(Fibonacci.Result())  # refused: arg-type, reportArgumentType
         goal_handle.publish_feedback(numbers)  # refused: arg-type, reportArgumentType
-        goal_handle.succeed(Fibonacci.Result())  # refused: call-arg, reportCallIssue
+        goal_handle.succeed(Fibonacci.Feedback())  # refused: arg-type, reportArgumentType
         return Fibonacci.Result(sequence=numbers)
 
     async def execute_slowly(self, goal_handle: ServerGoalHandle[Fibonacci]) -> Fibonacci.Result:

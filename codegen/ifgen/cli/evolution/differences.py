@@ -64,7 +64,7 @@ def breaking(
     format_: str,
     quiet: bool,
 ) -> int:
-    """Look for changes that break other programs, and write nothing.
+    """Look for changes that break other programs.
 
     Compares interfaces and node descriptions with their earlier version REF. Nothing is checked out.
 

@@ -52,6 +52,7 @@ _CREATED = (
 RESERVED: Final = frozenset(
     {f"{verb}_{kind}" for verb in ("create", "destroy") for kind in _CREATED}
     | {f"on_{change}" for change in ("configure", "cleanup", "shutdown", "activate", "deactivate", "error")}
+    | {f"get_{end}_info_by_service" for end in ("clients", "servers")}
     | {"on_parameters_changed", "on_type_mismatch"}
 )
 """Attributes of every node that an endpoint's members could be called."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from rclpy.action.client import ActionClient
     from rclpy.action.server import ActionServer
-    from rclpy.impl.typed import Action, FeedbackT, GoalT, ResponseT, Service
+    from rclpy.impl.typed import Action, FeedbackT, GoalT, ResponseT, ResultT, Service
     from rclpy.task import Future
 
 
@@ -207,15 +207,21 @@ class ServerGoalHandle(Generic[ActionT_co]):
     # With a response, the three ways to end a goal set its result. Otherwise that is the return value of the
     # execute callback, or an empty one if none was called. Any thread may call them.
 
-    def succeed(self, response: Any = None) -> None:
+    def succeed(
+        self: ServerGoalHandle[Action[Any, ResultT, Any, Any, Any]], response: ResultT | None = None
+    ) -> None:
         """End the goal as succeeded; raises RCLError unless it executes or is being cancelled."""
         self._end(_rclpy.GoalEvent.SUCCEED, response)
 
-    def abort(self, response: Any = None) -> None:
+    def abort(
+        self: ServerGoalHandle[Action[Any, ResultT, Any, Any, Any]], response: ResultT | None = None
+    ) -> None:
         """End the goal as aborted; raises RCLError unless it executes or is being cancelled."""
         self._end(_rclpy.GoalEvent.ABORT, response)
 
-    def canceled(self, response: Any = None) -> None:
+    def canceled(
+        self: ServerGoalHandle[Action[Any, ResultT, Any, Any, Any]], response: ResultT | None = None
+    ) -> None:
         """End the goal as cancelled; raises RCLError unless it is being cancelled."""
         self._end(_rclpy.GoalEvent.CANCELED, response)
 

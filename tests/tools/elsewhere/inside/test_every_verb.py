@@ -66,7 +66,7 @@ VERBS = {
 }
 """The arguments of each verb; its name is the first words that are a command."""
 
-OTHERS = {"doctor", "graph", "launch", "nodl describe", "run"}
+OTHERS = {"doctor", "graph", "launch", "nodl conform", "nodl describe", "run"}
 """Commands for which `running.elsewhere` tells."""
 
 LONELY = {"bag check", "bag migrate", "demo", "interface proto", "test"}
