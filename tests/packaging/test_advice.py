@@ -20,6 +20,10 @@ pytestmark = [
 OFFLINE = {"PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PIP_NO_BUILD_ISOLATION": "0"}
 
 
+def _is_installed(name: str) -> bool:
+    return name.startswith("tests/conformance/") or not name.startswith(("tests/", "benchmarks/"))
+
+
 @pytest.fixture(scope="module")
 def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A clone of the working tree, in a folder whose name must be quoted in a shell."""
@@ -32,7 +36,7 @@ def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
         check=True,
     )
     for name in listed.stdout.split("\0"):
-        if name and (ROOT / name).is_file() and not name.startswith(("tests/", "benchmarks/")):
+        if name and (ROOT / name).is_file() and _is_installed(name):
             (place / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, place / name)
     git = ["git", "-C", str(place), "-c", "user.name=x", "-c", "user.email=x@example.com"]

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from ifgen_pytest.domains import own_domain
 
+from tests.conformance.support import PYTHON
 from tests.tools.examples import example, leaves
 from tests.tools.transcript import environment, playing
 
@@ -34,6 +35,16 @@ try:
 except BaseException:
     pass
 """
+# A testee of ours, in the place of the user's.
+TESTEE = f"""
+import os, sys
+os.execv(sys.executable, [sys.executable, {PYTHON[1]!r}, "native"])
+"""
+OLD_NODL = """<interface version="1">
+  <node name="talker" executable="talk"><parameter name="rate" type="int"/></node>
+</interface>
+"""
+NODL = "nodl_version: 2\n"
 FIRST = ["ifgen init", "ifgen generate"]
 """They make what others need."""
 LISTENS = 2.0
@@ -74,6 +85,10 @@ def project(folder: Path) -> None:
     """The files that the examples name, in a repository with two versions of a message."""
     for name, text in {"bringup.launch.py": BRINGUP, "talker.py": TALKER, "listener.py": TALKER}.items():
         (folder / name).write_text(text.replace("talker", name.partition(".")[0]))
+    (folder / "nodl").mkdir()
+    others = {"testee.py": TESTEE, "robot.nodl.xml": OLD_NODL}
+    for name, text in {**others, "nodl/talker.nodl.yaml": NODL, "described.nodl.yaml": NODL}.items():
+        (folder / name).write_text(text)
     message = folder / "interfaces/demo_msgs/msg/Pose.msg"
     message.parent.mkdir(parents=True)
     git = ["git", "-C", str(folder), "-c", "user.name=a", "-c", "user.email=a@example.org"]

@@ -67,7 +67,7 @@ def describe(name: str, as_json: bool) -> int:
     return 0
 
 
-@generators.command(epilog="Example: ifgen generators test acme-docs --golden tests/golden")
+@generators.command(epilog="Example: ifgen generators test markdown")
 @click.argument("name", metavar="[NAME]", required=False)
 @click.option("--command", metavar="COMMAND", help="A program that is a generator, instead of NAME.")
 @click.option("--golden", metavar="DIR", type=OUTPUT_FOLDER, help="Compare with the files in this folder.")

@@ -18,7 +18,7 @@ _MOST = 20  # failures that are printed
 @click.command(
     cls=ToolCommand,
     context_settings={"help_option_names": ["-h", "--help"], "ignore_unknown_options": True},
-    epilog="Example: ifgen conformance --only 'alignment/*' -- node testee.mjs",
+    epilog="Example: ifgen conformance --only 'hash/*' -- python testee.py",
 )
 @click.argument("testee", metavar="TESTEE...", nargs=-1, type=click.UNPROCESSED, required=True)
 @click.option(

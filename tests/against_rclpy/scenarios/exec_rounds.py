@@ -89,7 +89,10 @@ def tasks(executor: Any) -> None:
         return name
 
     two = [executor.create_task(steps, "a"), executor.create_task(steps("b"))]
-    rounds(executor, 9, 0.01)
+    for _ in range(12):  # since 7.1.9 a task that has just stepped costs no round without a step
+        executor.spin_once(timeout_sec=0.01)
+    print(seen)
+    seen.clear()
     print([task.result() for task in two])
     waiting = Future(executor=executor)
 

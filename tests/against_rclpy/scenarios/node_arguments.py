@@ -179,7 +179,7 @@ FILES: list[tuple[list[str], list[str], list[str], str, str]] = [
         for text in (
             "", "\n", "# c\n", "a: 1\n", "a\n", "- a\n", "[]", "{}", "n: 1\n", "n:\n  a: 1\n", "n:\n", "n: {}\n", f"n: {{{P}: }}",
             f"n:\n  {P}:\n    1\n", f"n:\n  {P}:\n    - 1\n", f"n:\n  {P}:\n    a:\n", "n: [1]\n", f"n:\n  {P}:\n    a: &x 1\n    b: *x\n",
-            f"n:\n  {P}:\n    a: 1\n  m:\n    {P}:\n      b: 1\n", f"n:\n  {P}:\n   a: 1\n  b: 2\n", f'n:\n  {P}:\n    a: "x\n',
+            f"n:\n  {P}:\n   a: 1\n  b: 2\n", f'n:\n  {P}:\n    a: "x\n',
             f"n:\n  {P}:\n    a: 1\n---\nn:\n  {P}:\n    a: 2\n", "\tn: 1\n", f"{P}:\n  a: 1\n", f"n: {{{P}X: {{a: 1}}}}", f"n:\n  {P}:\n    '': 1\n",
             f"n:\n  {P}:\n    {P}:\n      a: 1\n", f"n:\n  {P}:\n    ? [a]\n    : 1\n", f"n: {{{P}: {{<<: {{a: 1}}}}}}",
             *(

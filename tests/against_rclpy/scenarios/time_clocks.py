@@ -61,7 +61,6 @@ def arithmetic() -> None:
         "duration less than a number": lambda: durations[0] < 1,
         "add a number": lambda: times[0] + 1,
         "subtract a number": lambda: times[0] - 1,
-        "sum of durations": lambda: durations[0] + durations[1],
         "durations": lambda: (
             durations[0] > durations[1],
             durations[0] >= durations[0],
