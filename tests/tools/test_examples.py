@@ -38,7 +38,7 @@ except BaseException:
 # A testee of ours, in the place of the user's.
 TESTEE = f"""
 import os, sys
-os.execv(sys.executable, [sys.executable, {PYTHON[1]!r}, "native"])
+os.execv(sys.executable, [sys.executable, {PYTHON[1]!r}, "ours"])
 """
 OLD_NODL = """<interface version="1">
   <node name="talker" executable="talk"><parameter name="rate" type="int"/></node>
