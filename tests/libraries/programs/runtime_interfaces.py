@@ -1,5 +1,6 @@
 """Prints messages as YAML and CSV, sets their fields, and finds interfaces."""
 
+import json
 from typing import Any
 
 from geometry_msgs.msg import PoseStamped
@@ -36,7 +37,7 @@ print(message_to_csv(state, truncate_length=2))
 print(message_to_yaml(state, truncate_length=2, no_str=True), end="")
 print(message_to_csv(state, no_arr=True))
 print(message_to_yaml(UInt8MultiArray(data=b"\x01\x02"), no_arr=True), end="")
-print(dict(message_to_ordereddict(Header(frame_id="map"), no_str=True)))
+print(json.dumps(message_to_ordereddict(Header(frame_id="map"), no_str=True)))
 nested = Float64MultiArray()
 set_message_fields(nested, {"layout": {"dim": [{"label": "x", "size": 2}]}, "data": [1, 2]})
 print(message_to_csv(nested))
