@@ -15,7 +15,7 @@ executor = SingleThreadedExecutor()
 executor.add_node(node)
 buffer = Buffer()
 listener = TransformListener(buffer, node)
-latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+latched = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)  # /tf_static has two publishers
 descriptions: list[str] = []
 topics: dict[str, str] = {}
 
