@@ -92,12 +92,14 @@ def _entry_points(text: str) -> Iterator[tuple[str, str]]:
 
 @cache
 def _others() -> dict[str, Plugin]:
-    """Those of all distributions: whoever names one of ours does without."""
+    """Those of other distributions: whoever names one of ours does without."""
     from importlib.metadata import entry_points  # late: 20 ms
 
+    own = _own()
     return {
         point.name: Plugin(
             name=point.name, value=point.value, distribution=point.dist.name if point.dist else None
         )
         for point in entry_points(group=_GROUP)
+        if point.name not in own  # to know whose it is takes reading all its metadata
     }

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
@@ -93,7 +94,8 @@ def _offset(source: Source, line: int, column: int) -> int:
     return sum(len(text) + 1 for text in lines[: line - 1]) + column - 1
 
 
-def places(text: str) -> dict[_Key, tuple[int, int]]:
+@lru_cache(maxsize=2)  # each target and output has several keys with places, in one file
+def places(text: str) -> Mapping[_Key, tuple[int, int]]:
     """The first place (start, end) of each key and table of a valid document, by its path."""
     found: dict[_Key, tuple[int, int]] = {}
     for path, span in _Scanner(text).document():
