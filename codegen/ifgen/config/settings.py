@@ -95,7 +95,30 @@ def settle(  # noqa: PLR0913 - one for each option
     _check_existence(config, "include", config.include)
     _check_existence(config, "templates", (config.templates,))
     _check_existence(config, "filters", (config.filters,))
-    custom = Customization(
+    policy = Policy(
+        rules=config.ignore,
+        per_file=config.per_file_ignores,
+        base=config.file.parent if config.file else Path(),
+        strict=config.strict if strict is None else strict,
+    )
+    return Settings(
+        paths=tuple(paths or config.paths),
+        output=output or config.output,
+        include=(*(include or ()), *config.include),
+        exclude=(*exclude, *(() if partial else config.exclude)),
+        with_deps=config.with_deps if with_deps is None else with_deps,
+        custom=_customization(config, templates, tests, partial),
+        policy=policy,
+        config=config,
+    )
+
+
+def _customization(
+    config: Config, templates: Path | None, tests: bool | None, partial: bool
+) -> Customization:
+    """The changes of users to what is generated, each with its place in the file."""
+    distributions = config.distributions
+    return Customization(
         templates=templates or config.templates,
         filters=config.filters,
         outputs=tuple(
@@ -110,8 +133,8 @@ def settle(  # noqa: PLR0913 - one for each option
         tests=config.tests if tests is None else tests,
         behind=config.templates if templates is not None else None,
         distributions=None
-        if config.distributions is None
-        else Distributions(config.distributions, config.place("distributions")),
+        if distributions is None
+        else Distributions(distributions, config.place("distributions")),
         requirements=config.requirements,
         ros_distro=config.ros_distro or os.environ.get("ROS_DISTRO"),
         targets=tuple(
@@ -119,22 +142,6 @@ def settle(  # noqa: PLR0913 - one for each option
             for name, target in config.generate.items()
         ),
         python=config.python,
-    )
-    policy = Policy(
-        rules=config.ignore,
-        per_file=config.per_file_ignores,
-        base=config.file.parent if config.file else Path(),
-        strict=config.strict if strict is None else strict,
-    )
-    return Settings(
-        paths=tuple(paths or config.paths),
-        output=output or config.output,
-        include=(*(include or ()), *config.include),
-        exclude=(*exclude, *(() if partial else config.exclude)),
-        with_deps=config.with_deps if with_deps is None else with_deps,
-        custom=custom,
-        policy=policy,
-        config=config,
     )
 
 

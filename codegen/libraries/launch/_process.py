@@ -133,8 +133,8 @@ def _terminals() -> tuple[list[int], list[int]]:
     return [master for master, _ in pairs], [slave for _, slave in pairs]
 
 
-class Warden:
-    """Ends the groups of processes if this process is killed (_warden.py)."""
+class Watchdog:
+    """Ends the groups of processes if this process is killed (_watchdog.py)."""
 
     def __init__(self) -> None:
         self._popen: subprocess.Popen[bytes] | None = None
@@ -142,7 +142,7 @@ class Warden:
     def watch(self, process: Process) -> None:
         """End this group, too."""
         if HAS_GROUPS and self._popen is None:
-            program = str(Path(__file__).parent / "_warden.py")
+            program = str(Path(__file__).parent / "_watchdog.py")
             self._popen = subprocess.Popen(
                 [sys.executable, "-I", "-S", program], stdin=subprocess.PIPE, start_new_session=True
             )
@@ -174,12 +174,12 @@ class Supervision:
         context: LaunchContext,
         actions: Sequence[ExecuteLocal],
         plan: ProcessToStart,
-        warden: Warden,
+        watchdog: Watchdog,
         on_end: Callable[[Supervision], None],
     ) -> None:
         self._context = context
         self._host = context.host
-        self._warden = warden
+        self._watchdog = watchdog
         self._ended = on_end
         self.actions = actions
         self.plan = plan
@@ -207,7 +207,7 @@ class Supervision:
                 f"cannot start the process '{plan.name}': {reason}: '{error.filename or plan.command[0]}'"
             )
             raise LaunchError(message, self.actions[0].place) from None
-        self._warden.watch(self._process)
+        self._watchdog.watch(self._process)
         self._log.info(f"process started with pid [{self._process.pid}]")
         for action in self.actions:
             action.process_details = self._details(action)
@@ -287,7 +287,7 @@ class Supervision:
                 self._print(number, rest)
                 self._rest[number] = b""
         process.signal(_SIGKILL)  # what it has left behind in its group
-        self._warden.forget(process)
+        self._watchdog.forget(process)
         respawns = self._respawns()
         self._say(process.pid, code)
         if code and not respawns and (not self.is_stopping or code == -_SIGKILL):

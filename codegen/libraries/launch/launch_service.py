@@ -13,7 +13,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Final
 
 from launch._errors import LaunchError, explained
-from launch._process import Supervision, Warden
+from launch._process import Supervision, Watchdog
 from launch.event import Event
 from launch.events import ExecutionComplete, IncludeLaunchDescription, Shutdown
 from launch.events.process import ProcessTargetedEvent, ShutdownProcess, SignalProcess
@@ -62,7 +62,7 @@ class LaunchService:
         if debug:
             launch_config.level = 10
         self._log = get_logger()
-        self._warden = Warden()
+        self._watchdog = Watchdog()
         self._calls: deque[Call] = deque()
         self._timed: list[TimedCall] = []
         self._ends: list[Call] = []
@@ -139,7 +139,7 @@ class LaunchService:
         self._task = None
         for each in self._running:
             each.signal(_SIGKILL)
-        self._warden.close()
+        self._watchdog.close()
         for end in self._ends:
             end()
         self._context.files.close()
@@ -273,7 +273,7 @@ class LaunchService:
 
     def start(self, actions: Sequence[ExecuteLocal], process: ProcessToStart) -> None:
         """Start the process of one action, or of several. Raises LaunchError."""
-        supervision = Supervision(self._context, actions, process, self._warden, self._ended)
+        supervision = Supervision(self._context, actions, process, self._watchdog, self._ended)
         supervision.start()
         self._running.append(supervision)
 

@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, Final
 
-import rclpy
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rclpy.utilities import remove_ros_args
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
+from robot_state_publisher._program import run
 from robot_state_publisher.urdf import MOVING, Joint, Robot, UrdfError, read_urdf
 
 _LATCHED: Final = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -128,21 +125,7 @@ def _middle(joint: Joint) -> float:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the program: `[URDF FILE]`, else the robot is that of the topic /robot_description."""
-    words = remove_ros_args(list(sys.argv if args is None else args))[1:]
-    try:
-        text = Path(words[0]).read_text(encoding="utf-8") if words else ""
-    except (OSError, UnicodeDecodeError) as error:
-        sys.exit(f"joint_state_publisher: cannot read '{words[0]}': {error}")
-    rclpy.init(args=sys.argv if args is None else list(args))
-    try:
-        rclpy.spin(JointStatePublisher(text))
-    except UrdfError as error:
-        sys.exit(f"joint_state_publisher: {error}")
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
-    return 0
+    return run("joint_state_publisher", JointStatePublisher, args)
 
 
 if __name__ == "__main__":

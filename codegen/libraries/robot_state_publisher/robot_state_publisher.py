@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, Final
 
-import rclpy
 from builtin_interfaces.msg import Time as Stamp
 from geometry_msgs.msg import TransformStamped
 from rcl_interfaces.msg import SetParametersResult
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rclpy.time import Time
-from rclpy.utilities import remove_ros_args
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from tf2_ros import StaticTransformBroadcaster, TransformBroadcaster
 
+from robot_state_publisher._program import run
 from robot_state_publisher.urdf import MOVING, Joint, Robot, UrdfError, read_urdf
 
 _LATCHED: Final = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -137,21 +134,12 @@ def _is_fixed(joint: Joint) -> bool:
 
 def main(args: Sequence[str] | None = None) -> int:
     """Run the program: `[FILE] --ros-args -p robot_description:=...`."""
-    words = remove_ros_args(list(sys.argv if args is None else args))[1:]
-    try:
-        text = Path(words[0]).read_text(encoding="utf-8") if words else ""
-    except (OSError, UnicodeDecodeError) as error:
-        sys.exit(f"robot_state_publisher: cannot read '{words[0]}': {error}")
-    rclpy.init(args=sys.argv if args is None else list(args))
-    try:
-        rclpy.spin(RobotStatePublisher(text))
-    except UrdfError as error:
-        sys.exit(f"robot_state_publisher: {error}; the URDF belongs into the parameter robot_description")
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    finally:
-        rclpy.try_shutdown()
-    return 0
+    return run(
+        "robot_state_publisher",
+        RobotStatePublisher,
+        args,
+        "; the URDF belongs into the parameter robot_description",
+    )
 
 
 if __name__ == "__main__":
