@@ -102,7 +102,7 @@ class Reader(ReadySource, Endpoint):
             self._queue.append(sample)
             for listener in self._listeners:
                 listener()
-        else:
+        elif self.content_filter is None or self._is_wanted(sample):
             self.store(sample)
             self.announce()
 

@@ -231,7 +231,17 @@ def _entities(node: Node) -> dict[str, Callable[[], Callable[[], object]]]:
     return {each.__name__: each for each in kinds}
 
 
-_KINDS = "subscription eventful by_its_callback client service timer guard action another_node".split()
+_KINDS = [
+    "subscription",
+    "eventful",
+    "by_its_callback",
+    "client",
+    "service",
+    "timer",
+    "guard",
+    "action",
+    "another_node",
+]
 
 
 def _succeed(handle: Any) -> Any:

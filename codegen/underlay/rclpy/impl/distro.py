@@ -87,6 +87,7 @@ API: Final[dict[str, Api]] = {
     "action_graph": Api(_LYRICAL, "get_action_names_and_types() of Node"),
     "feedback_filter": Api(_LYRICAL, "ActionClient(enable_feedback_msg_optimization=)"),
     "buffer_backends": Api(_LYRICAL, "create_subscription(acceptable_buffer_backends=)"),
+    "on_new_callbacks": Api(_LYRICAL, "set_on_new_message_callback() of a handle, or its kin"),
     "executing": Api(_LYRICAL, "ServerGoalHandle.executing()"),
 }
 """By the name that `uses` gets."""
@@ -215,7 +216,7 @@ NAMES: Final[dict[Distro, dict[str, dict[str, str]]]] = {
         "rclpy.wait_for_message": {"MsgT": _TYPES},
     },
     _LYRICAL: {
-        "rclpy.exceptions": {"TimeSourceChangedError": ""},
+        "rclpy.exceptions": {"TimeSourceChangedError": "rclpy.impl.newer"},
         "rclpy.experimental": dict.fromkeys(
             (
                 "AsyncClient",
@@ -228,13 +229,13 @@ NAMES: Final[dict[Distro, dict[str, dict[str, str]]]] = {
             ),
             "",
         ),
-        "rclpy.client": {"BaseClient": ""},
-        "rclpy.clock": {"BaseClock": ""},
-        "rclpy.node": {"BaseNode": "", "ServiceEndpointInfo": "rclpy.impl.newer"},
-        "rclpy.publisher": {"BasePublisher": ""},
-        "rclpy.service": {"BaseService": ""},
-        "rclpy.subscription": {"BaseSubscription": ""},
-        "rclpy.timer": {"BaseTimer": ""},
+        "rclpy.client": {"BaseClient": "rclpy.client:_BaseClient"},
+        "rclpy.clock": {"BaseClock": "rclpy.clock:_BaseClock"},
+        "rclpy.node": {"BaseNode": "rclpy.node:_BaseNode", "ServiceEndpointInfo": "rclpy.impl.newer"},
+        "rclpy.publisher": {"BasePublisher": "rclpy.publisher:_BasePublisher"},
+        "rclpy.service": {"BaseService": "rclpy.service:_BaseService"},
+        "rclpy.subscription": {"BaseSubscription": "rclpy.subscription:_BaseSubscription"},
+        "rclpy.timer": {"BaseTimer": "rclpy.timer:_BaseTimer"},
     },
 }
 """Names of modules: where each is defined (`:` if it has another name there), or nothing if we lack it."""

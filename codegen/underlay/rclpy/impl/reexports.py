@@ -37,6 +37,7 @@ _HOMES: dict[str, dict[str, str]] = {
         "GetTypeDescription": "type_description_interfaces.srv",
         "ParameterDescriptor": "rcl_interfaces.msg",
         "ParameterType": "rcl_interfaces.msg",
+        "Service": "rclpy.service",
         **_TYPE_CHECK,
     },
 }
