@@ -12,7 +12,7 @@ from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.impl import blocking, distro
 from rclpy.impl.blocking import wait_for_graph
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
 from rclpy.impl.reexports import reexport
@@ -91,7 +91,7 @@ else:
     _BaseOf = PlainBase(_BaseClient)
 
 
-class Client(Block, _BaseOf[ServiceT_co]):
+class Client(Owned, _BaseOf[ServiceT_co]):
     """Sends requests to a service; made by `Node.create_client`."""
 
     _ros_entity = "Client"

@@ -7,6 +7,7 @@ from enum import IntEnum
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict
 
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 
@@ -217,6 +218,24 @@ class _BaseClock:
 
         return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=tell)
 
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Whether it shows the time of a time source."""
+        if self._clock_type != ClockType.ROS_TIME:
+            distro.uses("every_clock")
+        with self.handle:
+            active: bool = self.handle.get_ros_time_override_is_enabled()
+            return active
+
+    def set_ros_time_override(self, time: Time) -> None:
+        """Tell it the time that it shows while ROS time is active."""
+        if self._clock_type != ClockType.ROS_TIME:
+            distro.uses("every_clock")
+        if not isinstance(time, Time):
+            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
+        with self.handle:
+            self.handle.set_ros_time_override(time._time_handle)
+
 
 class Clock(_BaseClock):
     """Reads one kind of time. `Clock(clock_type=ClockType.ROS_TIME)` makes a ROSClock."""
@@ -281,21 +300,7 @@ class ROSClock(Clock):
         assert isinstance(self, ROSClock)
         return self
 
-    @property
-    def ros_time_is_active(self) -> bool:
-        """Whether it shows the time of a time source."""
-        with self.handle:
-            active: bool = self.handle.get_ros_time_override_is_enabled()
-            return active
-
     def _set_ros_time_is_active(self, enabled: bool) -> None:
         """Switch; for the time source that manages this clock."""
         with self.handle:
             self.handle.set_ros_time_override_is_enabled(enabled)
-
-    def set_ros_time_override(self, time: Time) -> None:
-        """Tell it the time that it shows while ROS time is active."""
-        if not isinstance(time, Time):
-            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
-        with self.handle:
-            self.handle.set_ros_time_override(time._time_handle)

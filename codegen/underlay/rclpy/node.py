@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 import weakref
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from rcl_interfaces.msg import (
@@ -55,6 +56,7 @@ from rclpy.impl.blocks import Block
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import cleaned, wrong_return
 from rclpy.impl.reexports import reexport
+from rclpy.impl.topic_endpoint_info import TopicEndpointInfo
 from rclpy.logging import get_logger
 from rclpy.logging_service import LoggingService
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
@@ -67,7 +69,6 @@ from rclpy.subscription import Subscription
 from rclpy.subscription_content_filter_options import ContentFilterOptions
 from rclpy.time_source import TimeSource
 from rclpy.timer import Rate, Timer
-from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.type_description_service import TypeDescriptionService
 from rclpy.type_support import _class_of, check_is_valid_msg_type, check_is_valid_srv_type
 from rclpy.utilities import get_default_context
@@ -1256,10 +1257,27 @@ class Node(Block, _BaseNode):
     def __own(self, entity: _Entity, owned: list[_Entity], group: CallbackGroup) -> _Entity:
         group.add_entity(entity)
         owned.append(entity)
+        self.__be_told_by(entity)
         self._wake_executor()
         return entity
 
+    def __be_told_by(self, entity: Any) -> None:
+        """Have `_forget` called when the entity is destroyed, as newer ROS does."""
+        if distro.follows("destroy"):
+            entity._owner = weakref.ref(self)
+
+    def _forget(self, entity: Any) -> None:
+        """Own an entity no longer that was destroyed."""
+        for owned in (self._publishers, self._subscriptions, self._clients, self._services, self._timers):
+            with suppress(ValueError):
+                owned.remove(entity)
+        for handler in getattr(entity, "event_handlers", ()):
+            with suppress(ValueError):
+                self.remove_waitable(handler)
+        self._wake_executor()
+
     def __own_events_of(self, endpoint: Publisher[Any] | Subscription[Any]) -> None:
+        self.__be_told_by(endpoint)
         self._wake_executor()
         for handler in endpoint.event_handlers:
             self.add_waitable(handler)

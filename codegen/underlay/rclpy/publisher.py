@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
 from rclpy.event_handler import EventHandler, PublisherEventCallbacks
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import Generic, MessageT
@@ -100,7 +100,7 @@ else:
     _BaseOf = PlainBase(_BasePublisher)
 
 
-class Publisher(Block, _BaseOf[MessageT]):
+class Publisher(Owned, _BaseOf[MessageT]):
     """Publishes messages on a topic; made by `Node.create_publisher`."""
 
     _ros_entity = "Publisher"

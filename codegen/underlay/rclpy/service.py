@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
 from rclpy.impl.reexports import reexport
@@ -109,7 +109,7 @@ else:
     _BaseOf = PlainBase(_BaseService)
 
 
-class Service(Block, _BaseOf[ServiceT_co]):
+class Service(Owned, _BaseOf[ServiceT_co]):
     """Answers the requests of a service; made by `Node.create_service`."""
 
     _ros_entity = "Service"

@@ -14,7 +14,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 from rclpy.utilities import get_default_context
@@ -111,7 +111,7 @@ class _BaseTimer:
             return self.__timer.time_until_next_call()
 
 
-class Timer(Block, _BaseTimer):
+class Timer(Owned, _BaseTimer):
     """Calls back every period of its clock; made by `Node.create_timer`. All times in ns.
 
     :param callback: called without arguments, or with a TimerInfo if the annotation of a parameter says so.

@@ -87,6 +87,8 @@ API: Final[dict[str, Api]] = {
     "action_graph": Api(_LYRICAL, "get_action_names_and_types() of Node"),
     "feedback_filter": Api(_LYRICAL, "ActionClient(enable_feedback_msg_optimization=)"),
     "buffer_backends": Api(_LYRICAL, "create_subscription(acceptable_buffer_backends=)"),
+    "every_clock": Api(_LYRICAL, "Clock.ros_time_is_active or set_ros_time_override(), but for a ROSClock"),
+    "publisher_class": Api(_LYRICAL, "create_lifecycle_publisher(publisher_class=)"),
     "on_new_callbacks": Api(_LYRICAL, "set_on_new_message_callback() of a handle, or its kin"),
     "executing": Api(_LYRICAL, "ServerGoalHandle.executing()"),
 }
@@ -114,7 +116,10 @@ CHANGES: Final[dict[str, Change]] = {
     "second_execute": Change(
         _LYRICAL, "`execute` of a goal that executes or has ended", "RCLError", "nothing happens"
     ),
-    "old_names": Change(_LYRICAL, "`import rclpy.qos_event`", "a DeprecationWarning", "ModuleNotFoundError"),
+    "old_names": Change(
+        _LYRICAL, "`import rclpy.qos_event`, `rclpy.topic_endpoint_info`", "there", "ModuleNotFoundError"
+    ),
+    "destroy": Change(_LYRICAL, "an entity after its `destroy()`", "its node lists it", "it does not"),
 }
 """By the name that `follows` gets."""
 

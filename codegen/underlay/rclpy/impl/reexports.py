@@ -53,6 +53,8 @@ def reexport(module: str) -> Callable[[str], Any]:
     for each in homes.values():
         if each.startswith("rclpy."):
             importlib.import_module(each)
+    if module == "rclpy.node" and not distro.follows("old_names"):
+        importlib.import_module("rclpy.topic_endpoint_info")
 
     def find(name: str) -> Any:
         home, _, name_at_home = (homes.get(name) or distro.home_of(module, name)).partition(":")
