@@ -32,7 +32,12 @@ _HOMES: dict[str, dict[str, str]] = {
     "rclpy.node": {"ListParameters": "rcl_interfaces.srv", "ParameterMsg": "rcl_interfaces.msg:Parameter"},
     "rclpy.parameter_event_handler": {"Parameter": "rclpy.parameter"},
     "rclpy.time_source": {"SetParametersResult": "rcl_interfaces.msg"},
-    "rclpy.topic_endpoint_info": {"QoSHistoryPolicy": "rclpy.qos"},
+    "rclpy.topic_endpoint_info": {
+        "QoSHistoryPolicy": "rclpy.qos",
+        "QoSPresetProfiles": "rclpy.qos",
+        "QoSProfile": "rclpy.qos",
+        "TypeHash": "rclpy.type_hash",
+    },
     "rclpy.type_description_service": {
         "GetTypeDescription": "type_description_interfaces.srv",
         "ParameterDescriptor": "rcl_interfaces.msg",
