@@ -45,7 +45,7 @@ class FrequencyStatus(DiagnosticTask):
         self.clear()
 
     def clear(self) -> None:
-        """Begin anew."""
+        """Start over."""
         with self.lock:
             self.count = 0
             self.times = [self.__clock.now()] * self.params.window_size

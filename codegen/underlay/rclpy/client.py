@@ -36,7 +36,7 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
 class _BaseClient(Generic[ServiceT_co]):
-    """What clients of all kinds of nodes share: `rclpy.client.BaseClient`."""
+    """The common part of clients of all kinds of nodes: `rclpy.client.BaseClient`."""
 
     def __init__(
         self, client_impl: _rclpy.Client, srv_type: type[ServiceT_co], srv_name: str, qos_profile: QoSProfile

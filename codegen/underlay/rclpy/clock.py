@@ -166,7 +166,7 @@ class ClockHandle(DestroyableType, Protocol):
 
 
 class _BaseClock:
-    """What clocks of all kinds of nodes share: `rclpy.clock.BaseClock`."""
+    """The common part of clocks of all kinds of nodes: `rclpy.clock.BaseClock`."""
 
     if TYPE_CHECKING:
         __clock: Any

@@ -213,7 +213,7 @@ def _content_filter(options: ContentFilterOptions) -> tuple[str, list[str]]:
 
 
 class _BaseNode:
-    """What nodes of all kinds share: name, parameters, logger, clock, the graph, and services about them.
+    """The common part of nodes of all kinds: name, parameters, logger, clock, graph, services about them.
 
     It knows no executor. Each kind creates entities in its own way. Its name is `rclpy.node.BaseNode`.
 

@@ -24,7 +24,7 @@ MsgType = TypeVar("MsgType")  # programs import it from here
 
 
 class _BasePublisher(Generic[MessageT]):
-    """What publishers of all kinds of nodes share: `rclpy.publisher.BasePublisher`."""
+    """The common part of publishers of all kinds of nodes: `rclpy.publisher.BasePublisher`."""
 
     def __init__(
         self, publisher_impl: _rclpy.Publisher, msg_type: type[MessageT], topic: str, qos_profile: QoSProfile

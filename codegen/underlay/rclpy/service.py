@@ -30,7 +30,7 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
 class _BaseService(Generic[ServiceT_co]):
-    """What services of all kinds of nodes share: `rclpy.service.BaseService`."""
+    """The common part of services of all kinds of nodes: `rclpy.service.BaseService`."""
 
     def __init__(
         self,

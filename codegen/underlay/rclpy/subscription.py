@@ -28,7 +28,7 @@ MsgType = TypeVar("MsgType")  # programs import it from here
 
 
 class _BaseSubscription(Generic[MessageT]):
-    """What subscriptions of all kinds of nodes share: `rclpy.subscription.BaseSubscription`."""
+    """The common part of subscriptions of all kinds of nodes: `rclpy.subscription.BaseSubscription`."""
 
     class CallbackType(Enum):
         """The arguments of a callback."""

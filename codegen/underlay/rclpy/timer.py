@@ -26,7 +26,7 @@ else:
 
 
 class _BaseTimer:
-    """What timers of all kinds of nodes share: `rclpy.timer.BaseTimer`. All times in ns."""
+    """The common part of timers of all kinds of nodes: `rclpy.timer.BaseTimer`. All times in ns."""
 
     def __init__(
         self,
