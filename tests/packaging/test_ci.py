@@ -139,7 +139,7 @@ def test_the_action(project: Path) -> None:
         done = list(steps(project, skip=INSTALL, **inputs))
         return [name for name, _ in done], done[-1][1]
 
-    check, against, compare, generate, test = [
+    check, fmt, against, compare, generate, test = [
         step["name"] for step in loaded("action.yml")["runs"]["steps"]
     ][2:]
     names, last = outcome()
@@ -150,6 +150,8 @@ def test_the_action(project: Path) -> None:
     assert " passed" in last.stdout
     names, last = outcome(generated="")
     assert (names, last.returncode) == ([check, compare], 0)
+    names, last = outcome(generated="", fmt="true")
+    assert (names, last.returncode) == ([check, fmt, compare], 0)
     names, last = outcome(generated="", against="interfaces")
     assert (names, last.returncode) == ([check, against, compare], 0)
 
