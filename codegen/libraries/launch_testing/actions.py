@@ -1,14 +1,19 @@
-"""The action that starts the tests."""
+"""The action that starts the tests, and programs that are tests themselves."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
 from launch.action import Action
+from launch.actions import ExecuteProcess
+from launch.events import matches_action
+from launch.events.process import ShutdownProcess
 from launch.launch_context import LaunchContext
+from launch.some_substitutions_type import SomeSubstitutionsType
 
-__all__ = ["ReadyToTest"]
+__all__ = ["GTest", "PyTest", "ReadyToTest", "Test"]
 
 
 class ReadyToTest(Action):
@@ -26,3 +31,38 @@ class ReadyToTest(Action):
         """Start the tests."""
         for call in self._calls:
             call()
+
+
+class Test(ExecuteProcess):
+    """A program that is a test: it is stopped when its time [s] is over."""
+
+    __test__ = False  # for pytest, which would collect a class of this name
+
+    def __init__(self, *, timeout: float | None = None, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self.timeout = timeout
+
+    def execute(self, context: LaunchContext) -> Any:
+        """Start it, and its time."""
+        following = super().execute(context)
+        if self.timeout is not None:
+            context.host.later(self.timeout, lambda: self._end(context), until_shutdown=True)
+        return following
+
+    def _end(self, context: LaunchContext) -> None:
+        if self.process_details is not None and self.return_code is None:
+            context.host.emit(ShutdownProcess(process_matcher=matches_action(self)))
+
+
+class GTest(Test):
+    """A test with GoogleTest."""
+
+    def __init__(self, *, path: SomeSubstitutionsType, timeout: float | None = None, **kwargs: Any) -> None:
+        super().__init__(cmd=[path], timeout=timeout, **kwargs)
+
+
+class PyTest(Test):
+    """A file of tests for pytest, in a process of its own."""
+
+    def __init__(self, *, path: SomeSubstitutionsType, timeout: float | None = None, **kwargs: Any) -> None:
+        super().__init__(cmd=[sys.executable, "-m", "pytest", path], timeout=timeout, **kwargs)
