@@ -198,7 +198,6 @@ def test_events_and_environments(monkeypatch: pytest.MonkeyPatch) -> None:
     service.include_launch_description(
         LaunchDescription(
             [
-                RegisterEventHandler(OnIncludeLaunchDescription()),
                 ReplaceEnvironmentVariables({"A": ["b", EnvironmentVariable("B")]}),
                 EmitEvent(event=IncludeLaunchDescription(included)),
             ]
@@ -207,6 +206,9 @@ def test_events_and_environments(monkeypatch: pytest.MonkeyPatch) -> None:
     assert service.run() == 0
     assert said == ["b1"]
     assert dict(service.context.environment) == {"A": "b1"}
+    handler, event = OnIncludeLaunchDescription(), IncludeLaunchDescription(included)
+    assert handler.matches(event) and not handler.matches(Mine())
+    assert handler.handle(event, service.context) == [included]
     assert event_named("mine")(Mine()) and not event_named("other")(Mine())
 
 
