@@ -41,7 +41,7 @@ from launch.utilities import type_utils as types
 from launch_ros import utilities as ros
 from launch_ros.actions import ROSTimer
 from launch_ros.parameter_descriptions import ParameterValue
-from launch_testing.actions import PyTest
+from launch_testing.actions import PyTest, Test
 from launch_testing.event_handlers import StdoutReadyListener
 
 from tests.launching.conftest import Recorder
@@ -272,10 +272,19 @@ def test_tests_and_readiness() -> None:
     assert service.run() == 0
     assert ready == ["ready"]
     recorder = Recorder()
-    recorder.include_launch_description(LaunchDescription([PyTest(path="test_a.py", timeout=9.0)]))
+    recorder.include_launch_description(LaunchDescription([PyTest(path="test_a.py")]))
     recorder.run()
     (process,) = recorder.started
     assert process.command[1:] == ["-m", "pytest", "test_a.py"]
+
+
+@pytest.mark.parametrize(("seconds", "timeout", "code"), [(0, 1000.0, 0), (1000, 0.01, -signal.SIGINT)])
+def test_a_test_has_its_time(seconds: int, timeout: float, code: int) -> None:
+    program = Test(cmd=["sleep", str(seconds)], timeout=timeout)
+    service = LaunchService()
+    service.include_launch_description(LaunchDescription([program]))
+    service.run()
+    assert program.return_code == code
 
 
 def test_a_timer_on_the_clock_of_ros(capfd: Any) -> None:

@@ -8,8 +8,9 @@ from typing import Any
 
 from launch.action import Action
 from launch.actions import ExecuteProcess
+from launch.event_handlers import OnProcessExit
 from launch.events import matches_action
-from launch.events.process import ShutdownProcess
+from launch.events.process import ProcessExited, ShutdownProcess
 from launch.launch_context import LaunchContext
 from launch.some_substitutions_type import SomeSubstitutionsType
 
@@ -44,14 +45,16 @@ class Test(ExecuteProcess):
 
     def execute(self, context: LaunchContext) -> Any:
         """Start it, and its time."""
-        following = super().execute(context)
         if self.timeout is not None:
-            context.host.later(self.timeout, lambda: self._end(context), until_shutdown=True)
-        return following
+            end = ShutdownProcess(process_matcher=matches_action(self))
+            timer = context.host.later(self.timeout, lambda: context.host.emit(end), until_shutdown=True)
 
-    def _end(self, context: LaunchContext) -> None:
-        if self.process_details is not None and self.return_code is None:
-            context.host.emit(ShutdownProcess(process_matcher=matches_action(self)))
+            def finish(_: ProcessExited, __: LaunchContext) -> None:
+                timer.cancel()
+
+            handler = OnProcessExit(target_action=self, on_exit=finish, handle_once=True)
+            context.register_event_handler(handler)
+        return super().execute(context)
 
 
 class GTest(Test):
