@@ -20,6 +20,8 @@ from ifgen.command_kit.tool import ToolError
 
 from ifgen_tools.running import packages
 
+# Late imports: `launch`, which is found once the transport is chosen.
+
 if TYPE_CHECKING:
     from launch import LaunchDescription
 

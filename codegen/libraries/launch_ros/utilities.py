@@ -61,7 +61,7 @@ _NODE_NAMES = "unique_ros_node_names"
 
 
 def add_node_name(context: LaunchContext, node_name: str, count: int = 1) -> int:
-    """Note that so many nodes of a full name are started; returns how many there are then."""
+    """Count nodes of a full name that are started; returns their number so far."""
     names = context.get_globals_as_dict().get(_NODE_NAMES, {})
     names = {**names, node_name: names.get(node_name, 0) + count}
     context.extend_globals({_NODE_NAMES: names})
