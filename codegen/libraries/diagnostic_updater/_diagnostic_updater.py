@@ -184,7 +184,7 @@ class Updater(DiagnosticTaskVector):
 
     def broadcast(self, level: bytes, message: str) -> None:
         """Publish the same level and message for all tasks, without running them."""
-        statuses = []
+        statuses: list[DiagnosticStatus] = []
         for task in self._current():
             status = DiagnosticStatusWrapper(name=task.name, hardware_id=self.hwid)
             status.summary(level, message)

@@ -1,6 +1,6 @@
 # Values of parameters are Any.
 # pyright: reportUnknownArgumentType=false, reportUnknownLambdaType=false
-# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false
+# pyright: reportUnknownMemberType=false, reportUnknownVariableType=false, reportUnnecessaryIsInstance=false
 """Names of nodes, and what a node gets of the parameters that launch files write."""
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # Values that users write are Any.
-# pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false
+# pyright: reportUnknownArgumentType=false, reportUnknownVariableType=false, reportUnnecessaryIsInstance=false
 """Types of values in launch files: texts that stand for them, and substitutions that make such texts.
 
 A type is int, float, bool or str, a list of one of them, or None: whichever the text stands for in YAML.
@@ -50,7 +50,7 @@ def is_valid_scalar_type(data_type: Any) -> bool:
 def extract_type(data_type: Any) -> tuple[type, bool]:
     """Return the type of a value or of a list's elements, and whether it is a list. Raises ValueError."""
     is_list = is_typing_list(data_type)
-    scalar = (*typing.get_args(data_type), None)[0] if is_list else data_type
+    scalar: Any = (*typing.get_args(data_type), None)[0] if is_list else data_type
     if not is_valid_scalar_type(scalar):
         raise ValueError(f"expected int, float, bool, str, or a List of one of them, got {data_type!r}")
     return scalar, is_list
