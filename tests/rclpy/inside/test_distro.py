@@ -403,12 +403,6 @@ def _rosout_has_a_profile(node: Node) -> bool:
     return (profile.depth, profile.lifespan) == (1000, Duration(seconds=10))
 
 
-def _a_clock_change_has_an_error(node: Node) -> bool:
-    from rclpy.exceptions import TimeSourceChangedError
-
-    return issubclass(TimeSourceChangedError, Exception)
-
-
 # The rows of facts/rclpy-today.md 2.1 that no other test of this file has.
 _ROWS: dict[str, tuple[Distro, Any]] = {
     "contexts": (Distro.KILTED, _context_ends_what_it_holds),
@@ -420,7 +414,6 @@ _ROWS: dict[str, tuple[Distro, Any]] = {
     "bases": (Distro.LYRICAL, _bases_are_shared),
     "publisher_class": (Distro.LYRICAL, _lifecycle_publishers_have_a_class),
     "clocks": (Distro.LYRICAL, _every_clock_knows_of_ros_time),
-    "TimeSourceChangedError": (Distro.LYRICAL, _a_clock_change_has_an_error),
 }
 
 

@@ -221,7 +221,7 @@ NAMES: Final[dict[Distro, dict[str, dict[str, str]]]] = {
         "rclpy.wait_for_message": {"MsgT": _TYPES},
     },
     _LYRICAL: {
-        "rclpy.exceptions": {"TimeSourceChangedError": "rclpy.impl.newer"},
+        "rclpy.exceptions": {"TimeSourceChangedError": ""},
         "rclpy.experimental": dict.fromkeys(
             (
                 "AsyncClient",

@@ -47,12 +47,6 @@ class TimerInfo:
         return self._actual_call_time
 
 
-class TimeSourceChangedError(RuntimeError):
-    """A sleep on a ROS clock ended because ROS time was switched on or off."""
-
-    __module__ = "rclpy.exceptions"
-
-
 class MessageInfo(TypedDict):
     """The second argument of a subscription's callback; times in ns, system time."""
 
