@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections import deque
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from rmw_local import observer, timing
 from rmw_local.mismatch.passage import Marking
@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from rmw_local.mismatch.origin import Origin
     from rmw_local.qos import QosProfile
     from rmw_local.reader import Reader, Sample
+
+
+_MOST_FILTERS: Final = 16
+"""The number of filters of others that a writer evaluates for each message."""
 
 
 class RemoteSink(Protocol):
@@ -218,10 +222,10 @@ class Writer(Endpoint):
     def _make_sieve(self, sink: RemoteSink, before: Sieve | None) -> Sieve | None:
         """Make what leaves out of the way to other processes all that no reader there accepts.
 
-        None where a reader there accepts everything, or gets what is kept.
+        None where a reader there accepts everything or gets what is kept, and where there are many.
         """
         made = None
-        if self.remote_readers and not self._unfiltered and not self._keeps:
+        if 0 < len(self.remote_readers) <= _MOST_FILTERS and not self._unfiltered and not self._keeps:
             from rmw_local.content_filter import sieve_of  # late: few programs filter
 
             wanted = {reader.filter_elsewhere for reader in self.remote_readers}
