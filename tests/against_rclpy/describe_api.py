@@ -155,9 +155,11 @@ def describe(value: Any, *, top: bool = False) -> dict[str, Any]:
 
 
 def assigned_attributes(value: type) -> list[str]:
-    """Return the public names that a class's own code assigns on `self`."""
+    """Return the public names that the code of a class and its private bases assigns on `self`."""
+    private = [base for base in value.__bases__ if base.__name__.startswith("_Base")]
     try:
-        names = re.findall(r"self\.(\w+)\b[^=\n]* = ", inspect.getsource(value))
+        text = "".join(inspect.getsource(each) for each in (value, *private))
+        names = re.findall(r"self\.(\w+)\b[^=\n]* = ", text)
     except (OSError, TypeError):
         return []
     return [name for name in names if not name.startswith("_")]

@@ -11,8 +11,8 @@ _SOURCE = re.compile(r", at \S+\.c(pp)?:\d+")
 
 
 def without_source(text: str) -> str:
-    """Remove the place in C where an error was raised: ours are raised elsewhere."""
-    return _SOURCE.sub("", text)
+    """Remove the place where an error was raised: ours are raised elsewhere, or in a base that newer ROS has."""
+    return _SOURCE.sub("", text).replace("_Base", "")
 
 
 def refused(label: str, call: Callable[[], Any]) -> None:

@@ -50,10 +50,20 @@ def test_ours_fill_the_gap(transport: str, ros: Path) -> None:
     assert Path(said).parents[1] == resources.libraries()
 
 
-def test_the_one_of_a_ros_wins_where_its_rclpy_does(ros: Path) -> None:
+def test_the_one_of_a_ros_wins_where_its_rclpy_does_or_it_is_sourced(
+    ros: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     package(ros, "ament_index_python")
     assert run(f"import ifgen; ifgen.activate('rclpy'); {SAY}", ros).startswith(str(ros))
-    assert Path(run(f"import ifgen; ifgen.activate('local'); {SAY}", ros)).parents[1] == resources.libraries()
+    local = f"import ifgen; ifgen.activate('local'); {SAY}"
+    assert Path(run(local, ros)).parents[1] == resources.libraries()
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(ros.parent))
+    assert run(local, ros).startswith(str(ros))
+    assert "underlay" in run(
+        "import ifgen; ifgen.activate('local'); import rclpy; print(rclpy.__file__)", ros
+    )
+    other = ros.rename(ros.parent / "python3.4")
+    assert Path(run(local, other)).parents[1] == resources.libraries()
 
 
 @pytest.mark.parametrize("transport", ["local", "rclpy"])
@@ -97,3 +107,55 @@ assert isinstance(tf2_ros.Buffer(), BufferCore)
 print(tf2_ros.Buffer(tf2_ros.Duration(seconds=1)).all_frames_as_yaml())
 """
     assert run(program) == "[]"
+
+
+_THEIR_LAUNCH = {
+    "__init__.py": """
+class LaunchContext:
+    def __init__(self, argv=()): pass
+class LaunchDescription:
+    def __init__(self, entities): self.entities = entities
+class LaunchService:
+    def __init__(self, argv=()): self.argv = argv
+    def include_launch_description(self, description): self.included = description.entities[0]
+    def run(self):
+        import os, subprocess
+        source, arguments = self.included
+        print("theirs", source, arguments)
+        index = os.environ["AMENT_PREFIX_PATH"].split(os.pathsep)[0]
+        program = f"{index}/lib/user_pkg/hello"
+        assert os.path.exists(f"{index}/share/user_pkg/package.xml")
+        return subprocess.run([program, "again"]).returncode
+""",
+    "actions.py": "def IncludeLaunchDescription(source, launch_arguments): return source, launch_arguments",
+    "launch_description_sources.py": "def AnyLaunchDescriptionSource(path): return path",
+    "launch_service.py": "",
+}
+
+
+def test_the_launch_of_the_user_launches(tmp_path: Path) -> None:
+    theirs = package(tmp_path / "theirs", "launch")
+    for name, text in _THEIR_LAUNCH.items():
+        (theirs / "launch" / name).write_text(text)
+    sources = tmp_path / "user_pkg"
+    (package(sources, "user_pkg") / "user_pkg/hello.py").write_text(
+        "import sys, rclpy\ndef main():\n    print('hello', 'underlay' in rclpy.__file__, sys.argv[1:])\n"
+    )
+    (sources / "package.xml").write_text("<package><name>user_pkg</name></package>")
+    (sources / "setup.py").write_text(
+        "setup(entry_points={'console_scripts': ['hello = user_pkg.hello:main']})"
+    )
+    (sources / "up.launch.py").touch()
+    done = subprocess.run(
+        [sys.executable, "-m", "ifgen", "launch", "--transport", "local", "up.launch.py", "a:=1"],
+        cwd=sources,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join((str(theirs), str(CODEGEN)))},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "theirs up.launch.py [('a', '1')]" in done.stdout
+    assert "hello True ['again']" in done.stdout
+    assert f"note: the launch in {theirs / 'launch'} does this" in done.stderr

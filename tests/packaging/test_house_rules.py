@@ -32,6 +32,7 @@ WRITERS: Final = {
     "ifgen_tools/graph/commands.py": "the picture that was asked for",
     "ifgen_tools/conformance/commands.py": "the report that was asked for",
     "libraries/launch": "logs, and parameters for processes",
+    "ifgen_tools/launching/installed.py": "an index of ament for the time of a launch",
     "ifgen_tools/nodl/commands.py": "the document that was asked for",
     "ifgen_tools/running/processes.py": "a note by which the programs that it starts know of each other",
     "ifgen_tools/top/screen/frame.py": "no file: `truncate` of a line",

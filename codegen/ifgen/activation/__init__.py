@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib.machinery
 import os
+import re
 import sys
 from collections.abc import Iterable, Iterator
 from functools import cache
@@ -78,7 +79,8 @@ def put_on_path(
     if chosen == "local":
         # The user's packages come before ours, except folders that contain a real ROS.
         users = [entry for entry in real if entry not in ros]
-        path = [str(resources.underlay()), *users, *own, bundled, libraries, *ros]
+        sourced = [entry for entry in ros if _is_sourced(entry)]
+        path = [str(resources.underlay()), *users, *own, bundled, *sourced, libraries, *ros]
     else:
         try:
             path = [*overlays.path_on_ros(real, ros, own, beside), bundled, libraries]
@@ -165,6 +167,14 @@ def _has_ros(entry: str) -> bool:
     except OSError:  # no such folder, or a zip file
         return False
     return any((p / "__init__.py").is_file() and not (p / manifest.NAME).exists() for p in packages)
+
+
+def _is_sourced(entry: str) -> bool:
+    """Whether a folder belongs to a sourced ROS or workspace for this Python: its libraries can be used."""
+    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    others = [part for part in Path(entry).parts if re.fullmatch(r"python3\.\d+", part) and part != version]
+    prefixes = [place for place in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if place]
+    return not others and any(Path(entry).is_relative_to(place) for place in prefixes)
 
 
 def _finds(name: str, path: list[str]) -> bool:

@@ -28,9 +28,9 @@ _TRANSPORTS: dict[str, Literal["local", "rclpy", "auto"]] = {
 }
 """Arguments that choose the transport, for launch files that declare one of this name."""
 
-_ASSIGNMENT = re.compile(r"(\w+)=(.*)", re.DOTALL)
-
 _LIBRARIES = ("launch", "launch_ros", "launch_xml", "launch_yaml", "ament_index_python")
+
+_ASSIGNMENT = re.compile(r"(\w+)=(.*)", re.DOTALL)
 
 
 @click.command(
@@ -89,8 +89,14 @@ def launch(
     if source is not click.core.ParameterSource.COMMANDLINE:
         for word in given:
             transport = _TRANSPORTS.get(word, transport)
-    chosen = activate(transport, output)
+    chosen = _put_on_path(transport, output)
     path = _path(paths, output)
+    from ifgen_tools.launching import installed
+
+    if (theirs := installed.folder()) is not None:
+        print(f"note: the launch in {theirs} does this", file=sys.stderr, flush=True)
+        return installed.run(path, given, output=output, transport=chosen, show_args=show_args, prints=prints)
+    _import_ours()
     from launch import LaunchDescription, LaunchService
     from launch._errors import LaunchError, explained
     from launch.actions import IncludeLaunchDescription
@@ -154,18 +160,28 @@ def _split(words: Sequence[str]) -> tuple[list[str], list[str]]:
 
 def activate(transport: Literal["local", "rclpy", "auto"], output: Path) -> str:
     """Let launch files find the packages of a transport, and our launch before others; return which one."""
-    from ifgen import resources
+    chosen = _put_on_path(transport, output)
+    _import_ours()
+    return chosen
+
+
+def _put_on_path(transport: Literal["local", "rclpy", "auto"], output: Path) -> str:
     from ifgen.activation import ActivationError, put_on_path
 
     try:
-        chosen = put_on_path(transport, output)
+        return put_on_path(transport, output)
     except ActivationError as error:
         raise ToolError(str(error)) from None
+
+
+def _import_ours() -> None:
+    """Import our launch, whatever other folder of that name there is."""
+    from ifgen import resources
+
     sys.path.insert(0, str(resources.libraries()))
     for name in _LIBRARIES:
         importlib.import_module(name)
     sys.path.pop(0)
-    return chosen
 
 
 def _path(paths: list[str], output: Path) -> str:

@@ -7,3 +7,6 @@ from launch.launch_description_entity import LaunchDescriptionEntity
 
 SomeEntitiesType: TypeAlias = LaunchDescriptionEntity | Iterable[LaunchDescriptionEntity]
 """One entity or several."""
+
+SomeEntitiesType_types_tuple = (LaunchDescriptionEntity, Iterable)
+"""The same for `isinstance`."""

@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Literal
 
 from launch.actions import ExecuteLocal
 
@@ -29,6 +29,7 @@ __all__ = [
     "assertExitCodes",
     "assertInStderr",
     "assertInStdout",
+    "assertInStream",
     "assertSequentialStdout",
 ]
 
@@ -90,6 +91,22 @@ def assertInStderr(
         strips=strip_ansi_escape_sequences,
         descriptor=2,
     )
+
+
+def assertInStream(
+    proc_output: IoHandler,
+    expected_output: Expected,
+    process: ExecuteLocal | str | None,
+    cmd_args: str | Sequence[str] | None = None,
+    *,
+    stream: Literal["stdout", "stderr"] = "stderr",
+    **options: Any,
+) -> None:
+    """Assert the same of the stream that is named. Raises ValueError for another name."""
+    checks = {"stdout": assertInStdout, "stderr": assertInStderr}
+    if stream not in checks:
+        raise ValueError(f"stream must be 'stdout' or 'stderr', got {stream!r}")
+    checks[stream](proc_output, expected_output, process, cmd_args, **options)
 
 
 def _assert_in(

@@ -44,6 +44,9 @@ class Joint:
     lower: float
     """Limits [rad or m]; those of a continuous joint are -pi and pi."""
     upper: float
+    soft_lower: float
+    """Limits that a safety controller keeps [rad or m]; infinite if there is none."""
+    soft_upper: float
     mimic: Mimic | None
 
     def pose(self, position: float) -> tuple[Vector, Quaternion]:
@@ -140,6 +143,7 @@ def _joint(element: ElementTree.Element) -> Joint:
     if kind in {"revolute", "prismatic"} and limit is None:
         raise UrdfError(f"{what} of type {kind} needs a 'limit'")
     is_free = kind == "continuous"
+    safety = element.find("safety_controller")
     return Joint(
         name=name,
         type=kind,
@@ -150,6 +154,8 @@ def _joint(element: ElementTree.Element) -> Joint:
         axis=_scaled(direction, 1 / length) if length else direction,
         lower=-math.pi if is_free else _number(limit, "lower", what, 0.0),
         upper=math.pi if is_free else _number(limit, "upper", what, 0.0),
+        soft_lower=_number(safety, "soft_lower_limit", what, -math.inf),
+        soft_upper=_number(safety, "soft_upper_limit", what, math.inf),
         mimic=None
         if mimic is None
         else Mimic(

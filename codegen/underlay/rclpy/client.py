@@ -12,7 +12,7 @@ from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.impl import blocking, distro
 from rclpy.impl.blocking import wait_for_graph
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
 from rclpy.impl.reexports import reexport
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from rclpy.impl.typed import RequestT, ResponseT
     from rclpy.impl.typed import Service as ServiceWith
 else:
+    from rclpy.impl.typed import PlainBase
+
     __getattr__ = reexport(__name__)
 
 # Programs import them from here.
@@ -33,7 +35,63 @@ SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
-class Client(Block, Generic[ServiceT_co]):
+class _BaseClient(Generic[ServiceT_co]):
+    """The common part of clients of all kinds of nodes: `rclpy.client.BaseClient`."""
+
+    def __init__(
+        self, client_impl: _rclpy.Client, srv_type: type[ServiceT_co], srv_name: str, qos_profile: QoSProfile
+    ) -> None:
+        self.__client = client_impl
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.qos_profile = qos_profile
+
+    def service_is_ready(self) -> bool:
+        """Whether a service is there."""
+        with self.handle:
+            return self.__client.service_server_is_available()
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Switch the events about requests sent and responses received, stamped with `clock`."""
+        with self.handle:
+            self.__client.configure_introspection(
+                clock.handle, service_event_qos_profile.get_c_qos_profile(), introspection_state
+            )
+
+    @property
+    def handle(self) -> _rclpy.Client:
+        """The handle of the client library."""
+        return self.__client
+
+    @property
+    def service_name(self) -> str:
+        """The full service name: expanded and remapped."""
+        with self.handle:
+            return self.__client.service_name
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self.handle:
+            return self.__client.get_logger_name()
+
+    def destroy(self) -> None:
+        """Destroy it; to be called through `Node.destroy_client`."""
+        self.__client.destroy_when_not_in_use()
+
+
+if TYPE_CHECKING:
+    _BaseOf = _BaseClient
+else:
+    _BaseOf = PlainBase(_BaseClient)
+
+
+class Client(Owned, _BaseOf[ServiceT_co]):
     """Sends requests to a service; made by `Node.create_client`."""
 
     _ros_entity = "Client"
@@ -47,11 +105,8 @@ class Client(Block, Generic[ServiceT_co]):
         qos_profile: QoSProfile,
         callback_group: CallbackGroup,
     ) -> None:
+        super().__init__(client_impl, srv_type, srv_name, qos_profile)
         self.context = context
-        self.__client = client_impl
-        self.srv_type = srv_type
-        self.srv_name = srv_name
-        self.qos_profile = qos_profile
         self._pending_requests: dict[int, Future[Any]] = {}  # by request number
         self.callback_group = callback_group
         # Set by an executor that has noticed the client and has yet to set a future
@@ -98,7 +153,7 @@ class Client(Block, Generic[ServiceT_co]):
         """
         if not isinstance(request, self.srv_type.Request):
             raise wrong_class(request, self.srv_type.Request)
-        handle = self.__client
+        handle = self.handle
         with self._lock:
             if handle._destruction_requested:
                 handle.refuse_if_destroyed()
@@ -127,46 +182,8 @@ class Client(Block, Generic[ServiceT_co]):
                     del self._pending_requests[number]
                     break
 
-    def service_is_ready(self) -> bool:
-        """Whether a service is there."""
-        with self.handle:
-            return self.__client.service_server_is_available()
-
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until a service is there, at most `timeout_sec` seconds; returns whether it is."""
         with self.handle:
-            node = self.__client.node
+            node = self.handle.node
         return wait_for_graph(node, self.service_is_ready, timeout_sec)
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Switch the events about requests sent and responses received, stamped with `clock`."""
-        with self.handle:
-            self.__client.configure_introspection(
-                clock.handle, service_event_qos_profile.get_c_qos_profile(), introspection_state
-            )
-
-    @property
-    def handle(self) -> _rclpy.Client:
-        """The handle of the client library."""
-        return self.__client
-
-    @property
-    def service_name(self) -> str:
-        """The full service name: expanded and remapped."""
-        with self.handle:
-            return self.__client.service_name
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the node's logger."""
-        with self.handle:
-            return self.__client.get_logger_name()
-
-    def destroy(self) -> None:
-        """Destroy it; to be called through `Node.destroy_client`."""
-        self.__client.destroy_when_not_in_use()

@@ -7,6 +7,7 @@ from enum import IntEnum
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, TypedDict
 
+from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 
@@ -18,7 +19,9 @@ from .exceptions import NotInitializedException
 from .time import Time, TimeHandle
 from .utilities import get_default_context
 
-if not TYPE_CHECKING:
+if TYPE_CHECKING:
+    from typing import Self
+else:
     __getattr__ = reexport(__name__)
 
 
@@ -97,7 +100,7 @@ class JumpHandle:
     def __init__(
         self,
         *,
-        clock: Clock,
+        clock: _BaseClock,
         threshold: JumpThreshold,
         pre_callback: JumpHandlePreCallbackType | None,
         post_callback: Callable[[TimeJumpDictionary], None] | None,
@@ -108,7 +111,7 @@ class JumpHandle:
             raise ValueError("pre_callback must be callable if given")
         if post_callback is not None and not callable(post_callback):
             raise ValueError("post_callback must be callable if given")
-        self._clock: Clock | None = clock
+        self._clock: _BaseClock | None = clock
         self._pre_callback = pre_callback
         self._post_callback = post_callback
         forward = threshold.min_forward.nanoseconds if threshold.min_forward else 0
@@ -162,18 +165,18 @@ class ClockHandle(DestroyableType, Protocol):
         ...
 
 
-class Clock:
-    """Reads one kind of time. `Clock(clock_type=ClockType.ROS_TIME)` makes a ROSClock."""
+class _BaseClock:
+    """The common part of clocks of all kinds of nodes: `rclpy.clock.BaseClock`."""
 
     if TYPE_CHECKING:
         __clock: Any
         _clock_type: ClockType
 
-    def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Clock:
+    def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Self:
         """Make a clock of this kind."""
         if not isinstance(clock_type, (ClockType, _rclpy.ClockType)):
             raise TypeError("Clock type must be a ClockType enum")
-        self = super().__new__(ROSClock if clock_type == ClockType.ROS_TIME else cls)
+        self = super().__new__(cls)
         self.__clock = _rclpy.Clock(clock_type)
         self._clock_type = clock_type
         return self
@@ -214,6 +217,33 @@ class Clock:
                 told(TimeJump(jump["clock_change"], Duration(nanoseconds=jump["delta"])))
 
         return JumpHandle(clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=tell)
+
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Whether it shows the time of a time source."""
+        if self._clock_type != ClockType.ROS_TIME:
+            distro.uses("every_clock")
+        with self.handle:
+            active: bool = self.handle.get_ros_time_override_is_enabled()
+            return active
+
+    def set_ros_time_override(self, time: Time) -> None:
+        """Tell it the time that it shows while ROS time is active."""
+        if self._clock_type != ClockType.ROS_TIME:
+            distro.uses("every_clock")
+        if not isinstance(time, Time):
+            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
+        with self.handle:
+            self.handle.set_ros_time_override(time._time_handle)
+
+
+class Clock(_BaseClock):
+    """Reads one kind of time. `Clock(clock_type=ClockType.ROS_TIME)` makes a ROSClock."""
+
+    def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Clock:
+        """Make a clock of this kind."""
+        kind = ROSClock if clock_type == ClockType.ROS_TIME else cls
+        return _BaseClock.__new__(kind, clock_type=clock_type)
 
     def sleep_until(self, until: Time, context: Context | None = None) -> bool:
         """Sleep until this clock shows `until`.
@@ -258,7 +288,7 @@ class Clock:
             ClockType.STEADY_TIME: event.wait_until_steady,
             ClockType.ROS_TIME: event.wait_until_ros,
         }[ClockType(self._clock_type)]
-        wait(self.__clock, until._time_handle)
+        wait(self.handle, until._time_handle)
 
 
 class ROSClock(Clock):
@@ -270,21 +300,7 @@ class ROSClock(Clock):
         assert isinstance(self, ROSClock)
         return self
 
-    @property
-    def ros_time_is_active(self) -> bool:
-        """Whether it shows the time of a time source."""
-        with self.handle:
-            active: bool = self.handle.get_ros_time_override_is_enabled()
-            return active
-
     def _set_ros_time_is_active(self, enabled: bool) -> None:
         """Switch; for the time source that manages this clock."""
         with self.handle:
             self.handle.set_ros_time_override_is_enabled(enabled)
-
-    def set_ros_time_override(self, time: Time) -> None:
-        """Tell it the time that it shows while ROS time is active."""
-        if not isinstance(time, Time):
-            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
-        with self.handle:
-            self.handle.set_ros_time_override(time._time_handle)

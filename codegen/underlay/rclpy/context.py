@@ -18,7 +18,7 @@ from rclpy.impl import distro, program
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    from rclpy.node import _BaseNode as BaseNode
 
 
 class ContextHandle(DestroyableType, Protocol):
@@ -57,7 +57,7 @@ class Context(AbstractContextManager["Context"]):
         self._lock = threading.RLock()  # a shutdown callback may look at the context, as may a signal handler
         self._callbacks: list[WeakMethod[MethodType] | Callable[[], object]] = []
         self._logging_initialized = False
-        self._nodes: WeakSet[Node] = WeakSet()
+        self._nodes: WeakSet[BaseNode] = WeakSet()
         self.__context: _rclpy.Context | None = None
 
     @property
@@ -130,12 +130,12 @@ class Context(AbstractContextManager["Context"]):
             self._logging_fini()  # also after a signal
         self._call_back()
 
-    def track_node(self, node: Node) -> None:
+    def track_node(self, node: BaseNode) -> None:
         """Destroy a node, which is held weakly, when this shuts down; nodes do this themselves."""
         distro.uses("track_node")
         self._nodes.add(node)
 
-    def untrack_node(self, node: Node) -> None:
+    def untrack_node(self, node: BaseNode) -> None:
         """Take back `track_node`."""
         distro.uses("track_node")
         self._nodes.discard(node)

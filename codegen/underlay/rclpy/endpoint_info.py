@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from rclpy.impl import distro
 from rclpy.impl.newer import EndpointTypeEnum, ServiceEndpointInfo
-from rclpy.topic_endpoint_info import TopicEndpointInfo
+from rclpy.impl.topic_endpoint_info import TopicEndpointInfo
 
 __all__ = ["EndpointTypeEnum", "ServiceEndpointInfo", "TopicEndpointInfo"]
 

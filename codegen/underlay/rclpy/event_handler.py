@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import Any
 
 from rclpy.callback_groups import CallbackGroup
+from rclpy.exceptions import InvalidHandle
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.rcutils_logger import RcutilsLogger as _RcutilsLogger
 from rclpy.logging import get_logger
@@ -73,8 +74,11 @@ class EventHandler(Waitable):
         if not self._ready_to_take_data:
             return None
         self._ready_to_take_data = False
-        with self.__event:
-            return self.__event.take_event()
+        try:
+            with self.__event:
+                return self.__event.take_event()
+        except InvalidHandle:  # destroyed since it was found ready
+            return None
 
     async def execute(self, taken_data: Any) -> None:
         """Call back with a status."""

@@ -15,7 +15,7 @@ from rclpy.validate_topic_name import TOPIC_SEPARATOR_STRING
 
 if TYPE_CHECKING:
     import rclpy.logging  # there is one by the time that anybody calls: nodes have loggers
-    from rclpy.node import Node
+    from rclpy.node import _BaseNode as BaseNode
 
 if not TYPE_CHECKING:
     __getattr__ = reexport(__name__)
@@ -24,7 +24,7 @@ if not TYPE_CHECKING:
 class LoggingService:
     """The services `get_logger_levels` and `set_logger_levels` of a node, for loggers of any name."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: BaseNode) -> None:
         services: tuple[tuple[Any, str, Callable[[Any, Any], Any]], ...] = (
             (GetLoggerLevels, "get_logger_levels", self._get_logger_levels),
             (SetLoggerLevels, "set_logger_levels", self._set_logger_levels),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 import weakref
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Literal, TypeVar, overload
 
 from rcl_interfaces.msg import (
@@ -55,6 +56,7 @@ from rclpy.impl.blocks import Block
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import cleaned, wrong_return
 from rclpy.impl.reexports import reexport
+from rclpy.impl.topic_endpoint_info import TopicEndpointInfo
 from rclpy.logging import get_logger
 from rclpy.logging_service import LoggingService
 from rclpy.parameter import PARAMETER_SEPARATOR_STRING, Parameter
@@ -67,7 +69,6 @@ from rclpy.subscription import Subscription
 from rclpy.subscription_content_filter_options import ContentFilterOptions
 from rclpy.time_source import TimeSource
 from rclpy.timer import Rate, Timer
-from rclpy.topic_endpoint_info import TopicEndpointInfo
 from rclpy.type_description_service import TypeDescriptionService
 from rclpy.type_support import _class_of, check_is_valid_msg_type, check_is_valid_srv_type
 from rclpy.utilities import get_default_context
@@ -211,15 +212,10 @@ def _content_filter(options: ContentFilterOptions) -> tuple[str, list[str]]:
     return options.filter_expression, options.expression_parameters
 
 
-class Node(Block):
-    """A node: the unit of naming, ownership and parameters.
+class _BaseNode:
+    """The common part of nodes of all kinds: name, parameters, logger, clock, graph, services about them.
 
-    `cli_args` are arguments for this node alone and win over those of the process, which
-    `use_global_arguments=False` ignores. `parameter_overrides` win over values from arguments and files. With
-    `enable_logger_service` other nodes can read and set logger levels. `rosout_qos_profile` may be a depth.
-
-    Entities may be created and destroyed on any thread, also while the node spins: lists change by single
-    operations, and the executor is woken after each.
+    It knows no executor. Each kind creates entities in its own way. Its name is `rclpy.node.BaseNode`.
 
     Each change of a parameter is checked, offered to callbacks and published as an event. Callbacks of one
     kind run newest first. Overrides replace the value that a parameter is declared with.
@@ -228,8 +224,13 @@ class Node(Block):
     """
 
     PARAM_REL_TOL = rules.RELATIVE_TOLERANCE
-    _ros_entity = "Node"
-    _ros_end = "destroy_node"
+
+    if TYPE_CHECKING:  # each kind of node has its own, with arguments of its own
+        create_publisher: Any
+        create_subscription: Any
+        create_service: Any
+        _create_service: Any
+        destroy_subscription: Any
 
     def __init__(
         self,
@@ -254,19 +255,9 @@ class Node(Block):
         self._parameters: dict[str, Parameter] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
         self._allow_undeclared_parameters = allow_undeclared_parameters
-        self._publishers: list[Publisher[Any]] = []
-        self._subscriptions: list[Subscription[Any]] = []
-        self._clients: list[Client] = []
-        self._services: list[Service] = []
-        self._timers: list[Timer] = []
-        self._guards: list[GuardCondition] = []
-        self.__waitables: list[Waitable] = []
-        self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._pre_set_parameters_callbacks: list[_PreSetCallback] = []
         self._on_set_parameters_callbacks: list[_OnSetCallback] = []
         self._post_set_parameters_callbacks: list[_PostSetCallback] = []
-        self._rate_group = ReentrantCallbackGroup()
-        self.__executor_weakref: weakref.ref[Executor] | None = None
         if not self._context.ok():
             raise NotInitializedException("cannot create node")
         self.__node = _open(
@@ -304,76 +295,10 @@ class Node(Block):
             self._logger_service = LoggingService(self)
         self._type_description_service = TypeDescriptionService(self)
 
-    # Its name, its handles and what it owns
-
-    @property
-    def publishers(self) -> Iterator[Publisher[Any]]:
-        """Iterate over the publishers of this node."""
-        yield from self._publishers
-
-    @property
-    def subscriptions(self) -> Iterator[Subscription[Any]]:
-        """Iterate over the subscriptions of this node."""
-        yield from self._subscriptions
-
-    @property
-    def clients(self) -> Iterator[Client]:
-        """Iterate over the service clients of this node."""
-        yield from self._clients
-
-    @property
-    def services(self) -> Iterator[Service]:
-        """Iterate over the services of this node."""
-        yield from self._services
-
-    @property
-    def timers(self) -> Iterator[Timer]:
-        """Iterate over the timers of this node."""
-        yield from self._timers
-
-    @property
-    def guards(self) -> Iterator[GuardCondition]:
-        """Iterate over the guard conditions of this node."""
-        yield from self._guards
-
-    @property
-    def waitables(self) -> Iterator[Waitable]:
-        """Iterate over the waitables of this node: QoS events, actions, and those that users added."""
-        yield from self.__waitables
-
-    @property
-    def executor(self) -> Executor | None:
-        """The executor that the node belongs to; setting it takes the node out of the one before."""
-        return None if self.__executor_weakref is None else self.__executor_weakref()
-
-    @executor.setter
-    def executor(self, new_executor: Executor | None) -> None:
-        current = self.executor
-        if current == new_executor:
-            return
-        if current is not None:
-            current.remove_node(self)
-        if new_executor is None:
-            self.__executor_weakref = None
-        else:
-            new_executor.add_node(self)
-            self.__executor_weakref = weakref.ref(new_executor)
-
-    def _wake_executor(self) -> None:
-        """Let the executor see that the node's entities have changed."""
-        executor = self.executor
-        if executor is not None:
-            executor.wake()
-
     @property
     def context(self) -> Context:
         """The context the node was made in."""
         return self._context
-
-    @property
-    def default_callback_group(self) -> CallbackGroup:
-        """The mutually exclusive group of every entity that was created without one."""
-        return self._default_callback_group
 
     @property
     def handle(self) -> _rclpy.Node:
@@ -406,16 +331,6 @@ class Node(Block):
     def get_logger(self) -> RcutilsLogger:
         """Return the logger with the node's name."""
         return self._logger
-
-    def add_waitable(self, waitable: Waitable) -> None:
-        """Let the executor wait for something beyond the node's own entities."""
-        self.__waitables.append(waitable)
-        self._wake_executor()
-
-    def remove_waitable(self, waitable: Waitable) -> None:
-        """Stop waiting for it; raises ValueError for one that was never added."""
-        self.__waitables.remove(waitable)
-        self._wake_executor()
 
     # Parameters: declaring and reading them
 
@@ -731,8 +646,6 @@ class Node(Block):
         """Call it no longer; raises ValueError if it is unknown."""
         self._post_set_parameters_callbacks.remove(callback)
 
-    # Creating and destroying what it owns
-
     def _validate_topic_or_service_name(
         self, topic_or_service_name: str, *, is_service: bool = False
     ) -> None:
@@ -753,6 +666,314 @@ class Node(Block):
             raise ValueError("history depth must be greater than or equal to zero")
         return QoSProfile(depth=qos_or_depth)
 
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """Return the absolute name of a topic, remapped unless `only_expand`.
+
+        Raises RCLError for a bad name.
+        """
+        with self.handle:
+            return _rclpy.rclpy_resolve_name(self.handle, topic, only_expand, False)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """Return the absolute name of a service, remapped unless `only_expand`.
+
+        Raises RCLError for a bad name.
+        """
+        with self.handle:
+            return _rclpy.rclpy_resolve_name(self.handle, service, only_expand, True)
+
+    def destroy_node(self) -> None:
+        """Destroy the node; a second call does nothing."""
+        self._context._nodes.discard(self)
+        self._parameter_event_publisher = None
+        self._type_description_service.destroy()
+        self.handle.destroy_when_not_in_use()
+
+    # The graph around it
+
+    def get_publisher_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> _NamesAndTypes:
+        """Return (topic, types) of everything a node publishes."""
+        with self.handle:
+            return _rclpy.rclpy_get_publisher_names_and_types_by_node(
+                self.handle, no_demangle, node_name, node_namespace
+            )
+
+    def get_subscriber_names_and_types_by_node(
+        self, node_name: str, node_namespace: str, no_demangle: bool = False
+    ) -> _NamesAndTypes:
+        """Return (topic, types) of everything a node subscribes to."""
+        with self.handle:
+            return _rclpy.rclpy_get_subscriber_names_and_types_by_node(
+                self.handle, no_demangle, node_name, node_namespace
+            )
+
+    def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> _NamesAndTypes:
+        """Return (service, types) of everything a node serves."""
+        with self.handle:
+            return _rclpy.rclpy_get_service_names_and_types_by_node(self.handle, node_name, node_namespace)
+
+    def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> _NamesAndTypes:
+        """Return (service, types) of everything a node is a client of."""
+        with self.handle:
+            return _rclpy.rclpy_get_client_names_and_types_by_node(self.handle, node_name, node_namespace)
+
+    def get_topic_names_and_types(self, no_demangle: bool = False) -> _NamesAndTypes:
+        """Return (topic, types) of every topic."""
+        with self.handle:
+            return _rclpy.rclpy_get_topic_names_and_types(self.handle, no_demangle)
+
+    def get_service_names_and_types(self) -> _NamesAndTypes:
+        """Return (service, types) of every service."""
+        with self.handle:
+            return _rclpy.rclpy_get_service_names_and_types(self.handle)
+
+    def get_node_names(self) -> list[str]:
+        """Return the name of every node, without namespaces."""
+        return [name for name, _ in self.get_node_names_and_namespaces()]
+
+    def get_fully_qualified_node_names(self) -> list[str]:
+        """Return the full name of every node."""
+        return [
+            namespace + name if namespace.endswith("/") else f"{namespace}/{name}"
+            for name, namespace in self.get_node_names_and_namespaces()
+        ]
+
+    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
+        """Return (name, namespace) of every node."""
+        with self.handle:
+            return self.handle.get_node_names_and_namespaces()
+
+    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
+        """Return (name, namespace, enclave) of every node."""
+        with self.handle:
+            return self.handle.get_node_names_and_namespaces_with_enclaves()
+
+    def count_publishers(self, topic_name: str) -> int:
+        """Count the publishers of a topic. The name is expanded, not remapped; ValueError if it is bad."""
+        with self.handle:
+            return self.handle.get_count_publishers(self.__expand_valid(topic_name))
+
+    def count_subscribers(self, topic_name: str) -> int:
+        """Count the subscriptions of a topic. The name is expanded, not remapped; ValueError if it is bad."""
+        with self.handle:
+            return self.handle.get_count_subscribers(self.__expand_valid(topic_name))
+
+    def count_clients(self, service_name: str) -> int:
+        """Count the clients of a service. The name is expanded, not remapped; ValueError if it is bad."""
+        with self.handle:
+            return self.handle.get_count_clients(self.__expand_valid(service_name, is_service=True))
+
+    def count_services(self, service_name: str) -> int:
+        """Count the servers of a service. The name is expanded, not remapped; ValueError if it is bad."""
+        with self.handle:
+            return self.handle.get_count_services(self.__expand_valid(service_name, is_service=True))
+
+    def __expand_valid(self, name: str, *, is_service: bool = False) -> str:
+        full_name = expand_topic_name(name, self.get_name(), self.get_namespace())
+        validate_full_topic_name(full_name, is_service=is_service)
+        return full_name
+
+    def get_publishers_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        """Describe the publishers of a topic; its name is expanded and remapped unless `no_mangle`."""
+        return self._get_info_by_topic(topic_name, no_mangle, _rclpy.rclpy_get_publishers_info_by_topic)
+
+    def get_subscriptions_info_by_topic(
+        self, topic_name: str, no_mangle: bool = False
+    ) -> list[TopicEndpointInfo]:
+        """Describe the subscriptions of a topic; its name is expanded and remapped unless `no_mangle`."""
+        return self._get_info_by_topic(topic_name, no_mangle, _rclpy.rclpy_get_subscriptions_info_by_topic)
+
+    def _get_info_by_topic(
+        self, topic_name: str, no_mangle: bool, query: Callable[[Any, str, bool], list[dict[str, Any]]]
+    ) -> list[TopicEndpointInfo]:
+        with self.handle:
+            if not no_mangle:
+                topic_name = _rclpy.rclpy_remap_topic_name(self.handle, self.__expand_valid(topic_name))
+            return [TopicEndpointInfo(**info) for info in query(self.handle, topic_name, no_mangle)]
+
+    def get_clients_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        """Describe the clients of a service; its name is expanded, but not remapped, unless `no_mangle`."""
+        return self.__service_endpoints(service_name, no_mangle, _rclpy.rclpy_get_clients_info_by_service)
+
+    def get_servers_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        """Describe the servers of a service; its name is expanded, but not remapped, unless `no_mangle`."""
+        return self.__service_endpoints(service_name, no_mangle, _rclpy.rclpy_get_servers_info_by_service)
+
+    def __service_endpoints(
+        self, service_name: str, no_mangle: bool, query: Callable[[Any, str], list[dict[str, Any]]]
+    ) -> list[ServiceEndpointInfo]:
+        from rclpy.impl.newer import ServiceEndpointInfo  # late: few programs ask
+
+        distro.uses("service_endpoints")
+        name = service_name if no_mangle else self.__expand_valid(service_name, is_service=True)
+        with self.handle:
+            return [ServiceEndpointInfo(**info) for info in query(self.handle, name)]
+
+    def get_action_names_and_types(self) -> _NamesAndTypes:
+        """Return (action, types) of every action that has a server or a client."""
+        distro.uses("action_graph")
+        with self.handle:
+            return self.handle.get_action_names_and_types()
+
+    def get_action_client_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> _NamesAndTypes:
+        """Return (action, types) of everything that a node has action clients for."""
+        distro.uses("action_graph")
+        with self.handle:
+            return self.handle.get_action_client_names_and_types_by_node(node_name, node_namespace)
+
+    def get_action_server_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> _NamesAndTypes:
+        """Return (action, types) of every action that a node serves."""
+        distro.uses("action_graph")
+        with self.handle:
+            return self.handle.get_action_server_names_and_types_by_node(node_name, node_namespace)
+
+
+class Node(Block, _BaseNode):
+    """A node: the unit of naming, ownership and parameters.
+
+    `cli_args` are arguments for this node alone and win over those of the process, which
+    `use_global_arguments=False` ignores. `parameter_overrides` win over values from arguments and files. With
+    `enable_logger_service` other nodes can read and set logger levels. `rosout_qos_profile` may be a depth.
+
+    Entities may be created and destroyed on any thread, also while the node spins: lists change by single
+    operations, and the executor is woken after each.
+    """
+
+    _ros_entity = "Node"
+    _ros_end = "destroy_node"
+
+    def __init__(
+        self,
+        node_name: str,
+        *,
+        context: Context | None = None,
+        cli_args: list[str] | None = None,
+        namespace: str | None = None,
+        use_global_arguments: bool = True,
+        enable_rosout: bool = True,
+        rosout_qos_profile: QoSProfile | int | None = None,
+        start_parameter_services: bool = True,
+        parameter_overrides: list[Parameter] | None = None,
+        allow_undeclared_parameters: bool = False,
+        automatically_declare_parameters_from_overrides: bool = False,
+        enable_logger_service: bool = False,
+    ) -> None:
+        """Raises NotInitializedException, InvalidNodeNameException, InvalidNamespaceException, RCLError."""
+        self._publishers: list[Publisher[Any]] = []
+        self._subscriptions: list[Subscription[Any]] = []
+        self._clients: list[Client] = []
+        self._services: list[Service] = []
+        self._timers: list[Timer] = []
+        self._guards: list[GuardCondition] = []
+        self.__waitables: list[Waitable] = []
+        self._default_callback_group = MutuallyExclusiveCallbackGroup()
+        self._rate_group = ReentrantCallbackGroup()
+        self.__executor_weakref: weakref.ref[Executor] | None = None
+        super().__init__(
+            node_name,
+            context=context,
+            cli_args=cli_args,
+            namespace=namespace,
+            use_global_arguments=use_global_arguments,
+            enable_rosout=enable_rosout,
+            rosout_qos_profile=rosout_qos_profile,
+            start_parameter_services=start_parameter_services,
+            parameter_overrides=parameter_overrides,
+            allow_undeclared_parameters=allow_undeclared_parameters,
+            automatically_declare_parameters_from_overrides=automatically_declare_parameters_from_overrides,
+            enable_logger_service=enable_logger_service,
+        )
+
+    # What it owns
+
+    @property
+    def publishers(self) -> Iterator[Publisher[Any]]:
+        """Iterate over the publishers of this node."""
+        yield from self._publishers
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription[Any]]:
+        """Iterate over the subscriptions of this node."""
+        yield from self._subscriptions
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        """Iterate over the service clients of this node."""
+        yield from self._clients
+
+    @property
+    def services(self) -> Iterator[Service]:
+        """Iterate over the services of this node."""
+        yield from self._services
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        """Iterate over the timers of this node."""
+        yield from self._timers
+
+    @property
+    def guards(self) -> Iterator[GuardCondition]:
+        """Iterate over the guard conditions of this node."""
+        yield from self._guards
+
+    @property
+    def waitables(self) -> Iterator[Waitable]:
+        """Iterate over the waitables of this node: QoS events, actions, and those that users added."""
+        yield from self.__waitables
+
+    @property
+    def executor(self) -> Executor | None:
+        """The executor that the node belongs to; setting it takes the node out of the one before."""
+        return None if self.__executor_weakref is None else self.__executor_weakref()
+
+    @executor.setter
+    def executor(self, new_executor: Executor | None) -> None:
+        current = self.executor
+        if current == new_executor:
+            return
+        if current is not None:
+            current.remove_node(self)
+        if new_executor is None:
+            self.__executor_weakref = None
+        else:
+            new_executor.add_node(self)
+            self.__executor_weakref = weakref.ref(new_executor)
+
+    def _wake_executor(self) -> None:
+        """Let the executor see that the node's entities have changed."""
+        executor = self.executor
+        if executor is not None:
+            executor.wake()
+
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        """The mutually exclusive group of every entity that was created without one."""
+        return self._default_callback_group
+
+    def add_waitable(self, waitable: Waitable) -> None:
+        """Let the executor wait for something beyond the node's own entities."""
+        self.__waitables.append(waitable)
+        self._wake_executor()
+
+    def remove_waitable(self, waitable: Waitable) -> None:
+        """Stop waiting for it; raises ValueError for one that was never added."""
+        self.__waitables.remove(waitable)
+        self._wake_executor()
+
+    # Creating and destroying what it owns
+
     def __declare_qos_overrides(
         self, kind: Any, topic: str, profile: QoSProfile, options: QoSOverridingOptions | None
     ) -> None:
@@ -770,22 +991,6 @@ class Node(Block):
             except InvalidTopicNameException as error:
                 raise error from None
             raise
-
-    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a topic, remapped unless `only_expand`.
-
-        Raises RCLError for a bad name.
-        """
-        with self.handle:
-            return _rclpy.rclpy_resolve_name(self.handle, topic, only_expand, False)
-
-    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a service, remapped unless `only_expand`.
-
-        Raises RCLError for a bad name.
-        """
-        with self.handle:
-            return _rclpy.rclpy_resolve_name(self.handle, service, only_expand, True)
 
     def create_publisher(
         self,
@@ -983,11 +1188,22 @@ class Node(Block):
         callback_group: CallbackGroup | None = None,
     ) -> Service[ServiceT_co]:
         """Serve `srv_name`: `callback(request, response)` returns the response."""
-        group = self.default_callback_group if callback_group is None else callback_group
         check_is_valid_srv_type(srv_type)
         handle = self.__create_handle(_rclpy.Service, srv_type, srv_name, qos_profile, is_service=True)
-        kind: Any = srv_type
-        service: Service[ServiceT_co] = Service(handle, kind, srv_name, callback, group, qos_profile)
+        return self._create_service(handle, srv_type, srv_name, callback, qos_profile, callback_group)
+
+    def _create_service(
+        self,
+        handle: _rclpy.Service,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service[Any]:
+        """Own a service whose handle is there."""
+        group = self.default_callback_group if callback_group is None else callback_group
+        service: Service[Any] = Service(handle, srv_type, srv_name, callback, group, qos_profile)
         return self.__own(service, self._services, group)
 
     def create_timer(
@@ -1041,10 +1257,27 @@ class Node(Block):
     def __own(self, entity: _Entity, owned: list[_Entity], group: CallbackGroup) -> _Entity:
         group.add_entity(entity)
         owned.append(entity)
+        self.__be_told_by(entity)
         self._wake_executor()
         return entity
 
+    def __be_told_by(self, entity: Any) -> None:
+        """Have `_forget` called when the entity is destroyed, as newer ROS does."""
+        if distro.follows("destroy"):
+            entity._owner = weakref.ref(self)
+
+    def _forget(self, entity: Any) -> None:
+        """Own an entity no longer that was destroyed."""
+        for owned in (self._publishers, self._subscriptions, self._clients, self._services, self._timers):
+            with suppress(ValueError):
+                owned.remove(entity)
+        for handler in getattr(entity, "event_handlers", ()):
+            with suppress(ValueError):
+                self.remove_waitable(handler)
+        self._wake_executor()
+
     def __own_events_of(self, endpoint: Publisher[Any] | Subscription[Any]) -> None:
+        self.__be_told_by(endpoint)
         self._wake_executor()
         for handler in endpoint.event_handlers:
             self.add_waitable(handler)
@@ -1095,9 +1328,6 @@ class Node(Block):
 
     def destroy_node(self) -> None:
         """Destroy the node and everything it created; a second call does nothing."""
-        self._context._nodes.discard(self)
-        self._parameter_event_publisher = None
-        self._type_description_service.destroy()
         owned: tuple[tuple[list[Any], Callable[[Any], bool]], ...] = (
             (self._publishers, self.destroy_publisher),
             (self._subscriptions, self.destroy_subscription),
@@ -1110,158 +1340,8 @@ class Node(Block):
             while entities:
                 for entity in list(entities):
                     destroy(entity)
-        self.handle.destroy_when_not_in_use()
+        super().destroy_node()
         self._wake_executor()
-
-    # The graph around it
-
-    def get_publisher_names_and_types_by_node(
-        self, node_name: str, node_namespace: str, no_demangle: bool = False
-    ) -> _NamesAndTypes:
-        """Return (topic, types) of everything a node publishes."""
-        with self.handle:
-            return _rclpy.rclpy_get_publisher_names_and_types_by_node(
-                self.handle, no_demangle, node_name, node_namespace
-            )
-
-    def get_subscriber_names_and_types_by_node(
-        self, node_name: str, node_namespace: str, no_demangle: bool = False
-    ) -> _NamesAndTypes:
-        """Return (topic, types) of everything a node subscribes to."""
-        with self.handle:
-            return _rclpy.rclpy_get_subscriber_names_and_types_by_node(
-                self.handle, no_demangle, node_name, node_namespace
-            )
-
-    def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> _NamesAndTypes:
-        """Return (service, types) of everything a node serves."""
-        with self.handle:
-            return _rclpy.rclpy_get_service_names_and_types_by_node(self.handle, node_name, node_namespace)
-
-    def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> _NamesAndTypes:
-        """Return (service, types) of everything a node is a client of."""
-        with self.handle:
-            return _rclpy.rclpy_get_client_names_and_types_by_node(self.handle, node_name, node_namespace)
-
-    def get_topic_names_and_types(self, no_demangle: bool = False) -> _NamesAndTypes:
-        """Return (topic, types) of every topic."""
-        with self.handle:
-            return _rclpy.rclpy_get_topic_names_and_types(self.handle, no_demangle)
-
-    def get_service_names_and_types(self) -> _NamesAndTypes:
-        """Return (service, types) of every service."""
-        with self.handle:
-            return _rclpy.rclpy_get_service_names_and_types(self.handle)
-
-    def get_node_names(self) -> list[str]:
-        """Return the name of every node, without namespaces."""
-        return [name for name, _ in self.get_node_names_and_namespaces()]
-
-    def get_fully_qualified_node_names(self) -> list[str]:
-        """Return the full name of every node."""
-        return [
-            namespace + name if namespace.endswith("/") else f"{namespace}/{name}"
-            for name, namespace in self.get_node_names_and_namespaces()
-        ]
-
-    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        """Return (name, namespace) of every node."""
-        with self.handle:
-            return self.handle.get_node_names_and_namespaces()
-
-    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
-        """Return (name, namespace, enclave) of every node."""
-        with self.handle:
-            return self.handle.get_node_names_and_namespaces_with_enclaves()
-
-    def count_publishers(self, topic_name: str) -> int:
-        """Count the publishers of a topic. The name is expanded, not remapped; ValueError if it is bad."""
-        with self.handle:
-            return self.handle.get_count_publishers(self.__expand_valid(topic_name))
-
-    def count_subscribers(self, topic_name: str) -> int:
-        """Count the subscriptions of a topic. The name is expanded, not remapped; ValueError if it is bad."""
-        with self.handle:
-            return self.handle.get_count_subscribers(self.__expand_valid(topic_name))
-
-    def count_clients(self, service_name: str) -> int:
-        """Count the clients of a service. The name is expanded, not remapped; ValueError if it is bad."""
-        with self.handle:
-            return self.handle.get_count_clients(self.__expand_valid(service_name, is_service=True))
-
-    def count_services(self, service_name: str) -> int:
-        """Count the servers of a service. The name is expanded, not remapped; ValueError if it is bad."""
-        with self.handle:
-            return self.handle.get_count_services(self.__expand_valid(service_name, is_service=True))
-
-    def __expand_valid(self, name: str, *, is_service: bool = False) -> str:
-        full_name = expand_topic_name(name, self.get_name(), self.get_namespace())
-        validate_full_topic_name(full_name, is_service=is_service)
-        return full_name
-
-    def get_publishers_info_by_topic(
-        self, topic_name: str, no_mangle: bool = False
-    ) -> list[TopicEndpointInfo]:
-        """Describe the publishers of a topic; its name is expanded and remapped unless `no_mangle`."""
-        return self._get_info_by_topic(topic_name, no_mangle, _rclpy.rclpy_get_publishers_info_by_topic)
-
-    def get_subscriptions_info_by_topic(
-        self, topic_name: str, no_mangle: bool = False
-    ) -> list[TopicEndpointInfo]:
-        """Describe the subscriptions of a topic; its name is expanded and remapped unless `no_mangle`."""
-        return self._get_info_by_topic(topic_name, no_mangle, _rclpy.rclpy_get_subscriptions_info_by_topic)
-
-    def _get_info_by_topic(
-        self, topic_name: str, no_mangle: bool, query: Callable[[Any, str, bool], list[dict[str, Any]]]
-    ) -> list[TopicEndpointInfo]:
-        with self.handle:
-            if not no_mangle:
-                topic_name = _rclpy.rclpy_remap_topic_name(self.handle, self.__expand_valid(topic_name))
-            return [TopicEndpointInfo(**info) for info in query(self.handle, topic_name, no_mangle)]
-
-    def get_clients_info_by_service(
-        self, service_name: str, no_mangle: bool = False
-    ) -> list[ServiceEndpointInfo]:
-        """Describe the clients of a service; its name is expanded, but not remapped, unless `no_mangle`."""
-        return self.__service_endpoints(service_name, no_mangle, _rclpy.rclpy_get_clients_info_by_service)
-
-    def get_servers_info_by_service(
-        self, service_name: str, no_mangle: bool = False
-    ) -> list[ServiceEndpointInfo]:
-        """Describe the servers of a service; its name is expanded, but not remapped, unless `no_mangle`."""
-        return self.__service_endpoints(service_name, no_mangle, _rclpy.rclpy_get_servers_info_by_service)
-
-    def __service_endpoints(
-        self, service_name: str, no_mangle: bool, query: Callable[[Any, str], list[dict[str, Any]]]
-    ) -> list[ServiceEndpointInfo]:
-        from rclpy.impl.newer import ServiceEndpointInfo  # late: few programs ask
-
-        distro.uses("service_endpoints")
-        name = service_name if no_mangle else self.__expand_valid(service_name, is_service=True)
-        with self.handle:
-            return [ServiceEndpointInfo(**info) for info in query(self.handle, name)]
-
-    def get_action_names_and_types(self) -> _NamesAndTypes:
-        """Return (action, types) of every action that has a server or a client."""
-        distro.uses("action_graph")
-        with self.handle:
-            return self.handle.get_action_names_and_types()
-
-    def get_action_client_names_and_types_by_node(
-        self, node_name: str, node_namespace: str
-    ) -> _NamesAndTypes:
-        """Return (action, types) of everything that a node has action clients for."""
-        distro.uses("action_graph")
-        with self.handle:
-            return self.handle.get_action_client_names_and_types_by_node(node_name, node_namespace)
-
-    def get_action_server_names_and_types_by_node(
-        self, node_name: str, node_namespace: str
-    ) -> _NamesAndTypes:
-        """Return (action, types) of every action that a node serves."""
-        distro.uses("action_graph")
-        with self.handle:
-            return self.handle.get_action_server_names_and_types_by_node(node_name, node_namespace)
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait up to `timeout` [s] until a node is there; False if it does not come."""

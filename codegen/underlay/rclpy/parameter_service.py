@@ -23,13 +23,13 @@ from rclpy.qos import qos_profile_parameters
 from rclpy.validate_topic_name import TOPIC_SEPARATOR_STRING
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    from rclpy.node import _BaseNode as BaseNode
 
 
 class ParameterService:
     """Six services of a node under its own name. It holds the node weakly, because the node holds it."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: BaseNode) -> None:
         self._node_weak_ref = weakref.ref(node)
         node_name = node.get_name()
         services: tuple[tuple[Any, str, Callable[[Any, Any], Any]], ...] = (
@@ -102,7 +102,7 @@ class ParameterService:
             )
         return result
 
-    def _get_node(self) -> Node:
+    def _get_node(self) -> BaseNode:
         node = self._node_weak_ref()
         if node is None:
             raise ReferenceError("Expected valid node weak reference")

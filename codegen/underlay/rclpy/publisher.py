@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 from rclpy.callback_groups import CallbackGroup
 from rclpy.duration import Duration
 from rclpy.event_handler import EventHandler, PublisherEventCallbacks
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import Generic, MessageT
@@ -16,32 +16,23 @@ from rclpy.qos import QoSProfile
 if TYPE_CHECKING:
     from rclpy.impl.interface_protocols import MsgT as MsgT  # noqa: PLC0414 - programs import it from here
 else:
+    from rclpy.impl.typed import PlainBase
+
     __getattr__ = reexport(__name__)
 
 MsgType = TypeVar("MsgType")  # programs import it from here
 
 
-class Publisher(Block, Generic[MessageT]):
-    """Publishes messages on a topic; made by `Node.create_publisher`."""
-
-    _ros_entity = "Publisher"
+class _BasePublisher(Generic[MessageT]):
+    """The common part of publishers of all kinds of nodes: `rclpy.publisher.BasePublisher`."""
 
     def __init__(
-        self,
-        publisher_impl: _rclpy.Publisher,
-        msg_type: type[MessageT],
-        topic: str,
-        qos_profile: QoSProfile,
-        event_callbacks: PublisherEventCallbacks,
-        callback_group: CallbackGroup,
+        self, publisher_impl: _rclpy.Publisher, msg_type: type[MessageT], topic: str, qos_profile: QoSProfile
     ) -> None:
         self.__publisher = publisher_impl
         self.msg_type = msg_type
         self.topic = topic
         self.qos_profile = qos_profile
-        self.event_handlers: list[EventHandler] = event_callbacks.create_event_handlers(
-            callback_group, publisher_impl, topic
-        )
 
     def publish(self, msg: MessageT | bytes) -> None:
         """Publish a message, or the CDR bytes of one.
@@ -87,8 +78,6 @@ class Publisher(Block, Generic[MessageT]):
 
     def destroy(self) -> None:
         """Destroy it; to be called through `Node.destroy_publisher`."""
-        for handler in self.event_handlers:
-            handler.destroy()
         self.__publisher.destroy_when_not_in_use()
 
     def assert_liveliness(self) -> None:
@@ -103,3 +92,35 @@ class Publisher(Block, Generic[MessageT]):
         """
         with self.handle:
             return self.__publisher.wait_for_all_acked(timeout._duration_handle)
+
+
+if TYPE_CHECKING:
+    _BaseOf = _BasePublisher
+else:
+    _BaseOf = PlainBase(_BasePublisher)
+
+
+class Publisher(Owned, _BaseOf[MessageT]):
+    """Publishes messages on a topic; made by `Node.create_publisher`."""
+
+    _ros_entity = "Publisher"
+
+    def __init__(
+        self,
+        publisher_impl: _rclpy.Publisher,
+        msg_type: type[MessageT],
+        topic: str,
+        qos_profile: QoSProfile,
+        event_callbacks: PublisherEventCallbacks,
+        callback_group: CallbackGroup,
+    ) -> None:
+        super().__init__(publisher_impl, msg_type, topic, qos_profile)
+        self.event_handlers: list[EventHandler] = event_callbacks.create_event_handlers(
+            callback_group, publisher_impl, topic
+        )
+
+    def destroy(self) -> None:
+        """Destroy it; to be called through `Node.destroy_publisher`."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        super().destroy()

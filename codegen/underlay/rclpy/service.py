@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
 from rclpy.impl.reexports import reexport
@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from rclpy.impl.typed import ResponseT
     from rclpy.impl.typed import Service as ServiceWith
 else:
+    from rclpy.impl.typed import PlainBase
+
     __getattr__ = reexport(__name__)
 
 # Programs import them from here.
@@ -27,10 +29,8 @@ SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 
 
-class Service(Block, Generic[ServiceT_co]):
-    """Answers the requests of a service; made by `Node.create_service`."""
-
-    _ros_entity = "Service"
+class _BaseService(Generic[ServiceT_co]):
+    """The common part of services of all kinds of nodes: `rclpy.service.BaseService`."""
 
     def __init__(
         self,
@@ -38,19 +38,17 @@ class Service(Block, Generic[ServiceT_co]):
         srv_type: type[ServiceT_co],
         srv_name: str,
         callback: Callable[[Any, Any], Any],
-        callback_group: CallbackGroup,
         qos_profile: QoSProfile,
     ) -> None:
         self.__service = service_impl
         self.srv_type = srv_type
         self.srv_name = srv_name
         self.callback = callback
-        self.callback_group = callback_group
-        # Set by an executor that has noticed the service and has yet to run the callback
-        self._executor_event = False
         self.qos_profile = qos_profile
 
-    def send_response(self: Service[ServiceWith[Any, ResponseT]], response: ResponseT, header: Any) -> None:
+    def send_response(
+        self: _BaseService[ServiceWith[Any, ResponseT]], response: ResponseT, header: Any
+    ) -> None:
         """Answer the request that came with `header`.
 
         Raises TypeError for a response of another class, or for what is no header.
@@ -103,3 +101,29 @@ class Service(Block, Generic[ServiceT_co]):
     def destroy(self) -> None:
         """Destroy it; to be called through `Node.destroy_service`."""
         self.__service.destroy_when_not_in_use()
+
+
+if TYPE_CHECKING:
+    _BaseOf = _BaseService
+else:
+    _BaseOf = PlainBase(_BaseService)
+
+
+class Service(Owned, _BaseOf[ServiceT_co]):
+    """Answers the requests of a service; made by `Node.create_service`."""
+
+    _ros_entity = "Service"
+
+    def __init__(
+        self,
+        service_impl: _rclpy.Service,
+        srv_type: type[ServiceT_co],
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+    ) -> None:
+        super().__init__(service_impl, srv_type, srv_name, callback, qos_profile)
+        self.callback_group = callback_group
+        # Set by an executor that has noticed the service and has yet to run the callback
+        self._executor_event = False

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from rclpy.callback_groups import CallbackGroup
 from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import Generic, MessageT
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from rclpy.impl.interface_protocols import MsgT as MsgT  # noqa: PLC0414 - programs import it from here
     from rclpy.impl.newer import MessageInfo as MessageInfo  # noqa: PLC0414 - programs import it from here
 else:
+    from rclpy.impl.typed import PlainBase
+
     __getattr__ = reexport(__name__)
 
 MsgType = TypeVar("MsgType")  # programs import it from here
 
 
-class Subscription(Block, Generic[MessageT]):
-    """Receives the messages of a topic; made by `Node.create_subscription`."""
-
-    _ros_entity = "Subscription"
+class _BaseSubscription(Generic[MessageT]):
+    """The common part of subscriptions of all kinds of nodes: `rclpy.subscription.BaseSubscription`."""
 
     class CallbackType(Enum):
         """The arguments of a callback."""
@@ -42,23 +42,15 @@ class Subscription(Block, Generic[MessageT]):
         msg_type: type[MessageT],
         topic: str,
         callback: Callable[..., Any],
-        callback_group: CallbackGroup,
         qos_profile: QoSProfile,
         raw: bool,
-        event_callbacks: SubscriptionEventCallbacks,
     ) -> None:
         self.__subscription = subscription_impl
         self.msg_type = msg_type
         self.topic = topic
         self.callback = callback
-        self.callback_group = callback_group
-        # Set by an executor that has noticed the subscription and has yet to run the callback
-        self._executor_event = False
         self.qos_profile = qos_profile
         self.raw = raw
-        self.event_handlers: list[EventHandler] = event_callbacks.create_event_handlers(
-            callback_group, subscription_impl, topic
-        )
 
     def get_publisher_count(self) -> int:
         """Return the number of matched publishers."""
@@ -69,12 +61,6 @@ class Subscription(Block, Generic[MessageT]):
     def handle(self) -> _rclpy.Subscription:
         """The handle of the client library."""
         return self.__subscription
-
-    def destroy(self) -> None:
-        """Destroy it; to be called through `Node.destroy_subscription`."""
-        for handler in self.event_handlers:
-            handler.destroy()
-        self.handle.destroy_when_not_in_use()
 
     @property
     def topic_name(self) -> str:
@@ -91,9 +77,9 @@ class Subscription(Block, Generic[MessageT]):
     def callback(self, value: Callable[..., Any]) -> None:
         self._callback = value
         if _takes(value, 1):
-            self._callback_type = Subscription.CallbackType.MessageOnly
+            self._callback_type = self.CallbackType.MessageOnly
         elif _takes(value, 2):
-            self._callback_type = Subscription.CallbackType.WithMessageInfo
+            self._callback_type = self.CallbackType.WithMessageInfo
         else:
             raise RuntimeError(
                 "Subscription.__init__(): callback should be either be callable with one argument"
@@ -127,6 +113,47 @@ class Subscription(Block, Generic[MessageT]):
         """The name of the node's logger."""
         with self.handle:
             return self.__subscription.get_logger_name()
+
+    def destroy(self) -> None:
+        """Destroy it; to be called through `Node.destroy_subscription`."""
+        self.__subscription.destroy_when_not_in_use()
+
+
+if TYPE_CHECKING:
+    _BaseOf = _BaseSubscription
+else:
+    _BaseOf = PlainBase(_BaseSubscription)
+
+
+class Subscription(Owned, _BaseOf[MessageT]):
+    """Receives the messages of a topic; made by `Node.create_subscription`."""
+
+    _ros_entity = "Subscription"
+
+    def __init__(
+        self,
+        subscription_impl: _rclpy.Subscription,
+        msg_type: type[MessageT],
+        topic: str,
+        callback: Callable[..., Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        raw: bool,
+        event_callbacks: SubscriptionEventCallbacks,
+    ) -> None:
+        super().__init__(subscription_impl, msg_type, topic, callback, qos_profile, raw)
+        self.callback_group = callback_group
+        # Set by an executor that has noticed the subscription and has yet to run the callback
+        self._executor_event = False
+        self.event_handlers: list[EventHandler] = event_callbacks.create_event_handlers(
+            callback_group, subscription_impl, topic
+        )
+
+    def destroy(self) -> None:
+        """Destroy it; to be called through `Node.destroy_subscription`."""
+        for handler in self.event_handlers:
+            handler.destroy()
+        super().destroy()
 
 
 def _takes(function: Callable[..., Any], count: int) -> bool:

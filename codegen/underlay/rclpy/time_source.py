@@ -13,7 +13,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.time import Time
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    from rclpy.node import _BaseNode as BaseNode
     from rclpy.subscription import Subscription
 
 if not TYPE_CHECKING:
@@ -26,9 +26,9 @@ USE_SIM_TIME_NAME = "use_sim_time"
 class TimeSource:
     """Tells clocks the time of /clock; before the first message they show 0."""
 
-    def __init__(self, *, node: Node | None = None) -> None:
+    def __init__(self, *, node: BaseNode | None = None) -> None:
         self._clock_sub: Subscription[Any] | None = None
-        self._node_weak_ref: weakref.ReferenceType[Node] | None = None
+        self._node_weak_ref: weakref.ReferenceType[BaseNode] | None = None
         self._associated_clocks: set[ROSClock] = set()
         self._last_time_set = Time(clock_type=ClockType.ROS_TIME)
         self._ros_time_is_active = False
@@ -67,11 +67,11 @@ class TimeSource:
             QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
         )
 
-    def attach_node(self, node: Node) -> None:
+    def attach_node(self, node: BaseNode) -> None:
         """Follow this node's parameter use_sim_time, and no other's any more."""
-        from rclpy.node import Node  # imports this module
+        from rclpy.node import _BaseNode as BaseNode  # imports this module
 
-        if not isinstance(node, Node):
+        if not isinstance(node, BaseNode):
             raise TypeError("Node must be of type rclpy.node.Node")
         if self._node_weak_ref is not None:
             self.detach_node()
@@ -131,5 +131,5 @@ class TimeSource:
             break
         return SetParametersResult(successful=True)
 
-    def _get_node(self) -> Node | None:
+    def _get_node(self) -> BaseNode | None:
         return None if self._node_weak_ref is None else self._node_weak_ref()

@@ -14,7 +14,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocks import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 from rclpy.utilities import get_default_context
@@ -25,23 +25,12 @@ else:
     __getattr__ = reexport(__name__)
 
 
-class Timer(Block):
-    """Calls back every period of its clock; made by `Node.create_timer`. All times in ns.
-
-    :param callback: called without arguments, or with a TimerInfo if the annotation of a parameter says so.
-    :param callback_group: decides when it may run.
-    :param timer_period_ns: the period.
-    :param clock: what measures it.
-    :param context: None for the default one.
-    :param autostart: False: it runs from the first `reset` on.
-    """
-
-    _ros_entity = "Timer"
+class _BaseTimer:
+    """The common part of timers of all kinds of nodes: `rclpy.timer.BaseTimer`. All times in ns."""
 
     def __init__(
         self,
         callback: Callable[..., object] | None,
-        callback_group: CallbackGroup | None,
         timer_period_ns: int,
         clock: Clock,
         *,
@@ -55,8 +44,6 @@ class Timer(Block):
                 self._clock.handle, self._context.handle, int(timer_period_ns), autostart
             )
         self.callback = callback
-        self.callback_group = callback_group
-        self._executor_event = False  # a handler exists that has not yet taken its data
 
     @property
     def callback(self) -> Callable[..., object] | None:
@@ -122,6 +109,34 @@ class Timer(Block):
         """Return how long until it is due (negative: overdue); None if it is stopped."""
         with self.__timer:
             return self.__timer.time_until_next_call()
+
+
+class Timer(Owned, _BaseTimer):
+    """Calls back every period of its clock; made by `Node.create_timer`. All times in ns.
+
+    :param callback: called without arguments, or with a TimerInfo if the annotation of a parameter says so.
+    :param callback_group: decides when it may run.
+    :param timer_period_ns: the period.
+    :param clock: what measures it.
+    :param context: None for the default one.
+    :param autostart: False: it runs from the first `reset` on.
+    """
+
+    _ros_entity = "Timer"
+
+    def __init__(
+        self,
+        callback: Callable[..., object] | None,
+        callback_group: CallbackGroup | None,
+        timer_period_ns: int,
+        clock: Clock,
+        *,
+        context: Context | None = None,
+        autostart: bool = True,
+    ) -> None:
+        super().__init__(callback, timer_period_ns, clock, context=context, autostart=autostart)
+        self.callback_group = callback_group
+        self._executor_event = False  # a handler exists that has not yet taken its data
 
 
 def _info_parameter(callback: Callable[..., object] | None) -> str | None:

@@ -9,11 +9,10 @@ from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 from rclpy.parameter import Parameter
 from rclpy.qos import qos_profile_services_default
-from rclpy.service import Service
 from rclpy.validate_topic_name import TOPIC_SEPARATOR_STRING
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    from rclpy.node import _BaseNode as BaseNode
 
 if not TYPE_CHECKING:
     __getattr__ = reexport(__name__)
@@ -24,7 +23,7 @@ START_TYPE_DESCRIPTION_SERVICE_PARAM = "start_type_description_service"
 class TypeDescriptionService:
     """Starts the service of a node unless the parameter `start_type_description_service` forbids it."""
 
-    def __init__(self, node: Node) -> None:
+    def __init__(self, node: BaseNode) -> None:
         self._node_weak_ref = weakref.ref(node)
         self.service_name: str = TOPIC_SEPARATOR_STRING.join((node.get_name(), "get_type_description"))
         self._type_description_srv: _rclpy.TypeDescriptionService | None = None
@@ -38,7 +37,7 @@ class TypeDescriptionService:
             self._type_description_srv.destroy_when_not_in_use()
             self._type_description_srv = None
 
-    def _is_wanted(self, node: Node) -> bool:
+    def _is_wanted(self, node: BaseNode) -> bool:
         if not node.has_parameter(START_TYPE_DESCRIPTION_SERVICE_PARAM):
             from rcl_interfaces.msg import (  # generated: not needed to import rclpy
                 ParameterDescriptor,
@@ -73,24 +72,20 @@ class TypeDescriptionService:
 
         node = self._get_node()
         self._type_description_srv = _rclpy.TypeDescriptionService(node.handle)
-        service = Service(
-            service_impl=self._type_description_srv.impl,
-            srv_type=GetTypeDescription,
-            srv_name=self.service_name,
-            callback=self._service_callback,
-            callback_group=node.default_callback_group,
-            qos_profile=qos_profile_services_default,
+        # The handle exists already, so `create_service` cannot be used.
+        node._create_service(
+            self._type_description_srv.impl,
+            GetTypeDescription,
+            self.service_name,
+            self._service_callback,
+            qos_profile_services_default,
         )
-        # The handle exists already, so `Node.create_service` cannot be used.
-        node.default_callback_group.add_entity(service)
-        node._services.append(service)
-        node._wake_executor()
 
     def _service_callback(self, request: Any, response: Any) -> Any:
         assert self._type_description_srv is not None
         return self._type_description_srv.handle_request(request, type(response), self._get_node().handle)
 
-    def _get_node(self) -> Node:
+    def _get_node(self) -> BaseNode:
         node = self._node_weak_ref()
         if node is None:
             raise ReferenceError("Expected valid node weak reference")

@@ -11,9 +11,15 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import reduce
-from typing import Any, Final, NoReturn
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of
+
+from rmw_local.message import DecodeError
+
+if TYPE_CHECKING:
+    from rmw_local.reader import Sample
+    from rmw_local.writer import RemoteSink, Writer
 
 MOST_PARAMETERS: Final = 100
 
@@ -34,6 +40,7 @@ _COMPARISONS: Final[dict[str, Callable[[Any, Any], bool]]] = {
     ">=": operator.ge,
 }
 _MIRRORED: Final = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}
+_PATTERN: Final = re.compile(r"\b(LIKE|MATCH)\b", re.IGNORECASE)
 _KEYWORDS: Final = ("AND", "OR", "NOT", "BETWEEN", "LIKE", "MATCH")
 
 
@@ -80,6 +87,51 @@ def compile_filter(cls: type[Any], expression: str, parameters: Sequence[str]) -
     if not expression.strip():
         return None
     return ContentFilter(expression, tuple(parameters), _Parser(cls, expression, parameters).whole())
+
+
+class Sieve:
+    """A way to other processes for those messages only that a reader there accepts.
+
+    What cannot be read is sent, so that readers say what is wrong with it.
+    """
+
+    def __init__(self, writer: Writer, sink: RemoteSink, filters: Sequence[ContentFilter]) -> None:
+        self.last = writer.last_elsewhere
+        """The number of the last message that was sent."""
+        self.assert_alive = sink.assert_alive
+        self.wait_until_received = sink.wait_until_received
+        self.announce = sink.announce
+        self._accept = sink.accept
+        self._filters = filters
+        self._deserialize = writer.message_type.deserialize
+
+    def accept(self, sample: Sample) -> None:
+        """Send a message if one of the readers wants it."""
+        try:
+            message = self._deserialize(sample[0])
+            is_wanted = any(each.accepts(message) for each in self._filters)
+        except DecodeError:
+            is_wanted = True
+        if is_wanted:
+            self.last = sample[2]
+            self._accept(sample)
+
+    store = accept
+
+
+def sieve_of(writer: Writer, sink: RemoteSink, wanted: Sequence[tuple[str, tuple[str, ...]]]) -> Sieve | None:
+    """Return the sieve of expressions with their parameters; None if one of them cannot be used here.
+
+    They come from other processes. Patterns are left to these, because one can be slow without end.
+    """
+    if any(_PATTERN.search(expression) for expression, _ in wanted):
+        return None
+    try:
+        filters = [compile_filter(writer.message_type.cls, *each) for each in wanted]
+    except (FilterError, RecursionError):
+        return None
+    known = [each for each in filters if each is not None]
+    return Sieve(writer, sink, known) if len(known) == len(filters) else None
 
 
 class _Parser:

@@ -54,6 +54,8 @@ class Reader(ReadySource, Endpoint):
     _is_measured = False
     content_filter: ContentFilter | None = None
     """Which messages it wants; None: all. `set_filter` changes it."""
+    filter_elsewhere: tuple[str, tuple[str, ...]] | None = None
+    """Expression and parameters of the filter that it has in another process."""
 
     def __init__(self, node: GraphNode, message_type: MessageType, topic: str, qos: QosProfile) -> None:
         ReadySource.__init__(self)
@@ -79,6 +81,9 @@ class Reader(ReadySource, Endpoint):
             self.refuse_parcels()
         self.content_filter = content_filter
         self.measure(self._is_measured)
+        link = self.node.participant.domain.link
+        if link is not None:
+            link.show_anew(self)
 
     def _is_wanted(self, sample: Sample) -> bool:
         """Whether the filter accepts a message. What cannot be read is dropped where it is taken."""
@@ -102,7 +107,7 @@ class Reader(ReadySource, Endpoint):
             self._queue.append(sample)
             for listener in self._listeners:
                 listener()
-        else:
+        elif self.content_filter is None or self._is_wanted(sample):
             self.store(sample)
             self.announce()
 

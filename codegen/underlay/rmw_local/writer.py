@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import threading
 from collections import deque
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from rmw_local import observer, timing
 from rmw_local.mismatch.passage import Marking
@@ -16,11 +16,16 @@ from rmw_local.topic import Endpoint
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from rmw_local.content_filter import Sieve
     from rmw_local.graph import GraphNode
     from rmw_local.message import MessageType
     from rmw_local.mismatch.origin import Origin
     from rmw_local.qos import QosProfile
     from rmw_local.reader import Reader, Sample
+
+
+_MOST_FILTERS: Final = 16
+"""The number of filters of others that a writer evaluates for each message."""
 
 
 class RemoteSink(Protocol):
@@ -61,6 +66,8 @@ class Writer(Endpoint):
         self.local_readers: tuple[Reader, ...] = ()
         self.remote_readers: dict[Reader, int] = {}
         self.remote_sink: RemoteSink | None = None  # the way to other processes, while there are any
+        self._sieve: Sieve | None = None  # what leaves out messages of that way
+        self._unfiltered = 0  # the number of readers there that accept everything
         # Whether somebody there listens, announced or not, as tools do that know keys only
         self.is_heard = False
         self._marking: dict[Reader, Marking] = {}  # the stand-ins; replaced, never changed
@@ -133,7 +140,8 @@ class Writer(Endpoint):
         """Deliver to one more reader, marked with an origin. Called with the domain's lock held."""
         if reader.is_remote:
             self.remote_readers[reader] = self._last_before(reader)
-            if len(self.remote_readers) == 1:
+            self._unfiltered += reader.filter_elsewhere is None
+            if len(self.remote_readers) == 1 or self._sieve is not None:
                 self.settle_route()
             return
         patience = reader.qos.liveliness_lease_duration
@@ -179,7 +187,8 @@ class Writer(Endpoint):
         """Deliver to a reader no longer. Called with the domain's lock held."""
         if reader.is_remote:
             del self.remote_readers[reader]
-            if not self.remote_readers:
+            self._unfiltered -= reader.filter_elsewhere is None
+            if not self.remote_readers or not self._unfiltered:
                 self.settle_route()
             return
         self.local_readers = tuple(known for known in self.local_readers if known is not reader)
@@ -198,8 +207,10 @@ class Writer(Endpoint):
         kind = self.message_type
         serialize = kind.serialize
         is_wanted = self._keeps or self.is_heard or self.remote_readers
+        before, self._sieve = self._sieve, None
         if self.remote_sink is not None and is_wanted:
-            self.readers = (*local, self.remote_sink)
+            self._sieve = self._make_sieve(self.remote_sink, before)
+            self.readers = (*local, self._sieve or self.remote_sink)
         else:
             self.readers = local
             if len(local) == 1 and not self._keeps:
@@ -207,6 +218,29 @@ class Writer(Endpoint):
                 if not isinstance(reader, Marking) and reader.takes_parcels and reader.message_type is kind:
                     serialize = kind.pack
         self._route = serialize, self.readers
+
+    def _make_sieve(self, sink: RemoteSink, before: Sieve | None) -> Sieve | None:
+        """Make what leaves out of the way to other processes all that no reader there accepts.
+
+        None where a reader there accepts everything or gets what is kept, and where there are many.
+        """
+        made = None
+        if 0 < len(self.remote_readers) <= _MOST_FILTERS and not self._unfiltered and not self._keeps:
+            from rmw_local.content_filter import sieve_of  # late: few programs filter
+
+            wanted = {reader.filter_elsewhere for reader in self.remote_readers}
+            made = sieve_of(self, sink, [each for each in wanted if each is not None])
+        if before is not None and made is not None:
+            made.last = before.last
+        elif before is not None:  # nobody is owed what was left out
+            for reader, number in self.remote_readers.items():
+                self.remote_readers[reader] = max(number, self.last_number)
+        return made
+
+    @property
+    def last_elsewhere(self) -> int:
+        """The number of the last message that was sent to other processes."""
+        return self.last_number if self._sieve is None else self._sieve.last
 
     def _doubt(self) -> None:
         """Mark all messages, to readers that there are and to those to come."""

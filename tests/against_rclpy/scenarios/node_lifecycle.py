@@ -149,7 +149,6 @@ def entities() -> None:
     node = LifecycleNode("owner")
     node.add_managed_entity(switch)
     attempt("no entity", lambda: node.add_managed_entity(1))
-    attempt("publisher_class", lambda: node.create_lifecycle_publisher(publisher_class=1))
     heard: list[str] = []
     node.create_subscription(String, "t", lambda message: heard.append(message.data), 10)
     publisher = node.create_lifecycle_publisher(String, "t", 10)

@@ -7,13 +7,19 @@ from typing import Any
 
 import pytest
 import rclpy
+from rclpy.duration import Duration
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.serialization import serialize_message
 from rclpy.subscription_content_filter_options import ContentFilterOptions
-from rmw_local.content_filter import FilterError, compile_filter
+from rmw_local.content_filter import FilterError, compile_filter, sieve_of
+from rmw_local.message import message_type
+from rmw_local.transports.link import _PublicationSink
 from test_msgs.msg import Arrays, BasicTypes, Strings, UnboundedSequences
+
+from tests.rclpy.inside.contract.processes import connected
 
 BASIC = BasicTypes(
     int32_value=5, uint8_value=5, float64_value=1.5, bool_value=True, char_value=66, byte_value=b"\x03"
@@ -158,3 +164,76 @@ def test_a_subscription_with_a_wrong_filter_is_not_created(node: Node) -> None:
     with pytest.raises(AttributeError, match="filter_expression"):
         create(("int32_value = 1", []))
     assert node.count_subscribers("t") == 0
+
+
+@pytest.mark.parametrize("kind", ["recorded", "zenoh"])
+def test_what_no_process_wants_is_not_sent(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    sent: list[int] = []
+    plain = _PublicationSink.accept
+
+    def count(sink: Any, sample: Any) -> None:
+        sent.append(len(sample[0]))
+        plain(sink, sample)
+
+    monkeypatch.setattr(_PublicationSink, "accept", count)
+    heard: list[int] = []
+    lost: list[Any] = []
+    callback: Any = lambda message: heard.append(message.int32_value)  # noqa: E731 - it is one expression
+    events = SubscriptionEventCallbacks(message_lost=lost.append)
+    with connected(kind) as pair:
+        here, there = pair.process("here").node, pair.process("there").node
+        publisher = here.create_publisher(BasicTypes, "t", 100)
+        filtered = there.create_subscription(
+            BasicTypes,
+            "t",
+            callback,
+            100,
+            content_filter_options=ContentFilterOptions("int32_value BETWEEN %0 AND %1", ["90", "92"]),
+            event_callbacks=events,
+        )
+
+        def publish(expected: list[int]) -> None:
+            sent.clear()
+            pair.until(lambda: publisher.get_subscription_count() == sum(1 for _ in there.subscriptions))
+            for number in range(100):
+                publisher.publish(BasicTypes(int32_value=number))
+            pair.until(lambda: len(heard) == len(expected))
+            assert heard == expected
+            heard.clear()
+
+        publish([90, 91, 92])
+        assert sum(sent) == 3 * 52
+        assert publisher.wait_for_all_acked(Duration(seconds=10))
+        filtered.set_content_filter("int32_value = 5", [])
+        pair.until(lambda: there.count_subscribers("t") == here.count_subscribers("t") == 1)
+        pair.settle()
+        publish([5])
+        assert len(sent) == 1
+        all_of_them = there.create_subscription(BasicTypes, "t", lambda _: None, 100)
+        publish([5])
+        assert len(sent) == 100
+        there.destroy_subscription(all_of_them)
+        publish([5])
+        assert len(sent) == 1
+        filtered.set_content_filter("", [])
+        pair.settle()
+        publish(list(range(100)))
+    assert not lost
+
+
+@pytest.mark.parametrize("pattern", ["LIKE 'a%'", "match 'a.*'"])
+def test_patterns_of_others_are_not_evaluated(pattern: str) -> None:
+    class Sink:
+        accept = assert_alive = wait_until_received = announce = None
+
+    class Writer:
+        message_type = message_type(Strings)
+        last_elsewhere = 3
+
+    writer: Any = Writer()
+    sink: Any = Sink()
+    assert sieve_of(writer, sink, [(f"string_value {pattern}", ())]) is None
+    assert sieve_of(writer, sink, [("(" * 2000, ())]) is None
+    made = sieve_of(writer, sink, [("string_value = 'a'", ())])
+    assert made is not None
+    assert made.last == 3

@@ -223,7 +223,10 @@ def test_service(scene: Scene, fault: str) -> None:
         assert isinstance(answer, Trigger.Response)
     else:
         assert isinstance(answer, ServerGoneError)
-        scene.until(lambda: scene.raised)
+        if fault == "destroys":
+            scene.until(lambda: "service '/switch' was destroyed during a request" in scene.said())
+        else:
+            scene.until(lambda: scene.raised)
         if fault in WRONG:
             assert str(scene.raised[0]).startswith("expected Trigger_Response, got ")
 

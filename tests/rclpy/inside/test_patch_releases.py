@@ -198,7 +198,50 @@ def _entities(node: Node) -> dict[str, Callable[[], Callable[[], object]]]:
         made.send_goal_async(Fibonacci.Goal())
         return lambda: (server.destroy(), made.destroy())
 
-    return {each.__name__: each for each in (subscription, eventful, client, timer, guard, action)}
+    def by_its_callback() -> Callable[[], object]:
+        heard = threading.Event()
+
+        def destroy(_: String) -> None:
+            node.destroy_subscription(made)
+            heard.set()
+
+        events = SubscriptionEventCallbacks(matched=lambda _: None)
+        made = node.create_subscription(String, "once", destroy, 1, event_callbacks=events)
+        once.publish(String())
+        return lambda: heard.wait(10)
+
+    def service() -> Callable[[], object]:
+        made = node.create_service(Empty, "s2", lambda _, response: response, callback_group=group)
+        asking = node.create_client(Empty, "s2", callback_group=group)
+        asking.call_async(Empty.Request())
+        return lambda: (node.destroy_service(made), node.destroy_client(asking))
+
+    def another_node() -> Callable[[], object]:
+        other = rclpy.create_node("other")
+        events = SubscriptionEventCallbacks(matched=lambda _: None)
+        other.create_timer(0.0, lambda: None)
+        other.create_subscription(String, "t", lambda _: None, 1, event_callbacks=events)
+        assert node.executor is not None
+        node.executor.add_node(other)
+        publisher.publish(String())
+        return other.destroy_node
+
+    once = node.create_publisher(String, "once", 1)
+    kinds = (subscription, eventful, by_its_callback, client, service, timer, guard, action, another_node)
+    return {each.__name__: each for each in kinds}
+
+
+_KINDS = [
+    "subscription",
+    "eventful",
+    "by_its_callback",
+    "client",
+    "service",
+    "timer",
+    "guard",
+    "action",
+    "another_node",
+]
 
 
 def _succeed(handle: Any) -> Any:
@@ -210,7 +253,7 @@ def _succeed(handle: Any) -> Any:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("make_executor", EXECUTORS[:2], ids=IDS[:2])
-@pytest.mark.parametrize("kind", ["subscription", "eventful", "client", "timer", "guard", "action"])
+@pytest.mark.parametrize("kind", _KINDS)
 def test_destruction_while_another_thread_spins(node: Node, kind: str, make_executor: Any) -> None:
     executor: Executor = make_executor()
     executor.add_node(node)
@@ -224,7 +267,9 @@ def test_destruction_while_another_thread_spins(node: Node, kind: str, make_exec
 
     thread = threading.Thread(target=spin)
     thread.start()
-    for _ in range(200):
+    for _ in range(400):
+        if faults:
+            break
         create()()
     executor.shutdown()
     thread.join(10)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import string
 from dataclasses import replace
 
 import pytest
@@ -99,7 +100,7 @@ def test_tokens_and_gids() -> None:
     assert refusing == f"{TALKER}/ifgen_refuses"
     assert tokens.read(refusing).refuses
     plain = tokens.read(TALKER)
-    assert not (plain.stands_in or plain.refuses)
+    assert not (plain.stands_in or plain.refuses or plain.content_filter)
     node = tokens.read("@ros2_lv/7/abc1/2/2/NN/%/%ns1%deep/talker")
     assert (node.kind, node.namespace, node.node) == (Kind.NODE, "/ns1/deep", "talker")
     humble = tokens.read(TALKER.replace(STRING_HASH, "TypeHashNotSupported"))
@@ -224,6 +225,21 @@ def test_further_parts_of_a_token_change_its_gid_only(further: str) -> None:
     plain, longer = tokens.read(TALKER), tokens.read(TALKER + further)
     assert longer.gid != plain.gid
     assert replace(longer, gid=plain.gid) == plain
+
+
+@pytest.mark.parametrize("wanted", [("a = %0 AND b LIKE 'ä/*%'", ("'x'",)), ("a = 1", ())])
+def test_tokens_with_content_filters(wanted: tuple[str, tuple[str, ...]]) -> None:
+    text = tokens.write(0, "abc1", replace(tokens.read(TALKER), content_filter=wanted))
+    assert text.startswith(f"{TALKER}/ifgen_filter/")
+    assert set(text[len(TALKER) :]) <= set("/-_") | set(string.ascii_letters + string.digits)
+    assert tokens.read(text).content_filter == wanted
+    long = tokens.write(0, "abc1", replace(tokens.read(TALKER), content_filter=("a" * 2000, ())))
+    assert long == TALKER
+
+
+@pytest.mark.parametrize("words", ["", "/", "/***", "/bm8", "/WzEsMl0", "/WyJhIixbMV1d", "/ifgen_filter"])
+def test_filters_that_are_none(words: str) -> None:
+    assert tokens.read(f"{TALKER}/ifgen_filter{words}").content_filter is None
 
 
 def test_attachments() -> None:

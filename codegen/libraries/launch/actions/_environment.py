@@ -110,6 +110,24 @@ class PopEnvironment(Action):
         context.pop_environment()
 
 
+class ReplaceEnvironmentVariables(Action):
+    """Replaces the whole environment by variables that may have substitutions."""
+
+    def __init__(
+        self,
+        environment: Mapping[SomeSubstitutionsType, SomeSubstitutionsType] | None = None,
+        *,
+        condition: Condition | None = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.environment = dict(environment or {})
+
+    def execute(self, context: LaunchContext) -> None:
+        """Replace it. The values are computed in the one before."""
+        given = {performed(context, k): performed(context, v) for k, v in self.environment.items()}
+        context.set_environment(given)
+
+
 class ResetEnvironment(Action):
     """Returns to the environment that the launch started with."""
 

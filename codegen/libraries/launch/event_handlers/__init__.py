@@ -8,7 +8,7 @@ from typing import Any, TypeAlias
 from launch.action import Action
 from launch.event import Event
 from launch.event_handler import EventHandler, as_list
-from launch.events import ExecutionComplete, Shutdown
+from launch.events import ExecutionComplete, IncludeLaunchDescription, Shutdown
 from launch.events.process import ProcessExited, ProcessIO, ProcessStarted
 from launch.launch_context import LaunchContext
 from launch.launch_description_entity import LaunchDescriptionEntity
@@ -17,10 +17,12 @@ from launch.some_entities_type import SomeEntitiesType
 __all__ = [
     "OnActionEventBase",
     "OnExecutionComplete",
+    "OnIncludeLaunchDescription",
     "OnProcessExit",
     "OnProcessIO",
     "OnProcessStart",
     "OnShutdown",
+    "event_named",
 ]
 
 Target: TypeAlias = Action | Callable[[Any], bool] | None
@@ -142,3 +144,21 @@ class OnProcessIO(OnActionEventBase):
             target_event_cls=ProcessIO,
             handle_once=handle_once,
         )
+
+
+class OnIncludeLaunchDescription(EventHandler):
+    """Visits the description of an IncludeLaunchDescription event."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(matcher=lambda event: isinstance(event, IncludeLaunchDescription), **kwargs)
+
+    def handle(self, event: Event, context: LaunchContext) -> Sequence[LaunchDescriptionEntity]:
+        """Return the description."""
+        super().handle(event, context)
+        included: Any = event
+        return [included.launch_description]
+
+
+def event_named(name: str) -> Callable[[Event], bool]:
+    """Return a matcher of events with a name, such as `launch.events.Shutdown`."""
+    return lambda event: event.name == name

@@ -30,6 +30,15 @@ def parse_substitution(text: str) -> list[Substitution]:
     return parse(text, None)
 
 
+def parse_if_substitutions(value: Any) -> Any:
+    """Return what a value of an attribute has: a text is parsed, and each of a list. Raises LaunchError."""
+    if isinstance(value, str):
+        return parse_substitution(value)
+    if isinstance(value, list):
+        return [parse_if_substitutions(each) for each in value]
+    return value
+
+
 def parse(text: str, place: Place | None) -> list[Substitution]:
     """Return the parts of a text. Raises LaunchError."""
     reader = _Reader(text, place)

@@ -8,7 +8,7 @@ from launch._errors import LaunchError as InvalidPythonLaunchFileError
 from launch.launch_context import LaunchContext
 from launch.launch_description import LaunchDescription
 from launch.launch_description_source import LaunchDescriptionSource
-from launch.launch_description_sources._reading import read
+from launch.launch_description_sources._reading import load_python_launch_file_as_module, read
 from launch.some_substitutions_type import SomeSubstitutionsType
 
 __all__ = [
@@ -20,6 +20,7 @@ __all__ = [
     "get_launch_description_from_any_launch_file",
     "get_launch_description_from_frontend_launch_file",
     "get_launch_description_from_python_launch_file",
+    "load_python_launch_file_as_module",
 ]
 
 

@@ -12,6 +12,7 @@ from launch_ros.actions.composable_node_container import ComposableNodeContainer
 from launch_ros.actions.lifecycle_node import LifecycleNode, LifecycleTransition
 from launch_ros.actions.node import Node
 from launch_ros.actions.ros_timer import RosTimer
+from launch_ros.actions.ros_timer import RosTimer as ROSTimer
 
 PushROSNamespace = PushRosNamespace
 
@@ -23,6 +24,7 @@ __all__ = [
     "Node",
     "PushROSNamespace",
     "PushRosNamespace",
+    "ROSTimer",
     "RosTimer",
     "SetParameter",
     "SetParametersFromFile",

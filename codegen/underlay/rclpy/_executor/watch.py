@@ -23,6 +23,7 @@ from rmw_local.ready import Listener
 from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.rcl.topics import message_info
+from rclpy.logging import get_logger
 
 if TYPE_CHECKING:
     from rclpy.executors import Executor
@@ -335,15 +336,24 @@ class ServiceWatch(Watch):
             unfinished = _unfinished(result, callback)
             if unfinished is not None:
                 return self._respond_later(unfinished, header)
-            service.send_response(result, header)
+            self._respond(result, header)
         except BaseException as error:
             self.source.fail(header.request_id, f"its callback has failed ({type(error).__name__})")
             raise
         return None
 
+    def _respond(self, response: Any, header: Any) -> None:
+        try:
+            self.entity.send_response(response, header)
+        except _rclpy.InvalidHandle:  # it was destroyed while its callback ran: its clients have been told
+            service = self.source
+            get_logger(service.get_logger_name()).warning(
+                f"service '{service.name}' was destroyed during a request: the response goes to nobody"
+            )
+
     async def _respond_later(self, unfinished: Coroutine[Any, Any, Any], header: Any) -> None:
         try:
-            self.entity.send_response(await unfinished, header)
+            self._respond(await unfinished, header)
         except BaseException as error:
             self.source.fail(header.request_id, f"its callback has failed ({type(error).__name__})")
             raise

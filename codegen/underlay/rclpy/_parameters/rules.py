@@ -12,7 +12,7 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.parameter import Parameter
 
 if TYPE_CHECKING:
-    from rclpy.node import Node
+    from rclpy.node import _BaseNode as BaseNode
 
 
 # What a node does if another one has another definition of a type. It need not be declared: an override
@@ -21,7 +21,7 @@ ON_TYPE_MISMATCH = "on_type_mismatch"
 _VARIABLE = "IFGEN_ON_TYPE_MISMATCH"
 
 
-def follow_policy(node: Node) -> None:
+def follow_policy(node: BaseNode) -> None:
     """Let the node's place in the graph have the policy of today; ValueError for a value that is none."""
     node.handle.graph_node.on_type_mismatch = _policy(node)
 
@@ -37,14 +37,14 @@ def policy_fault(parameter: Parameter) -> str | None:
     return None
 
 
-def _policy(node: Node) -> str:
+def _policy(node: BaseNode) -> str:
     known = node._parameters.get(ON_TYPE_MISMATCH) or node._parameter_overrides.get(ON_TYPE_MISMATCH)
     if known is None and not hasattr(type(node), ON_TYPE_MISMATCH) and not os.environ.get(_VARIABLE):
         return "warn"
     return _policy_of(node, None if known is None else known.value)
 
 
-def _policy_of(node: Node | None, value: object) -> str:
+def _policy_of(node: BaseNode | None, value: object) -> str:
     from ifgen_runtime.mismatch.policy import policy_of  # late: most nodes warn
 
     return policy_of(node, value).value

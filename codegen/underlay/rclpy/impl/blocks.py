@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import weakref
 from types import TracebackType
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from rclpy.impl import distro
 
 if TYPE_CHECKING:
     from typing import Self
+
+    from rclpy.node import Node
 
 
 class Block:
@@ -31,3 +34,17 @@ class Block:
         exc_tb: TracebackType | None,
     ) -> None:
         getattr(self, self._ros_end)()
+
+
+class Owned(Block):
+    """A mixin for an entity that its node lists; in newer ROS, until it is destroyed."""
+
+    _owner: weakref.ref[Node] | None = None
+
+    def destroy(self) -> None:
+        """Destroy it."""
+        entity: Any = super()
+        entity.destroy()
+        node = None if self._owner is None else self._owner()
+        if node is not None:
+            node._forget(self)

@@ -87,6 +87,9 @@ API: Final[dict[str, Api]] = {
     "action_graph": Api(_LYRICAL, "get_action_names_and_types() of Node"),
     "feedback_filter": Api(_LYRICAL, "ActionClient(enable_feedback_msg_optimization=)"),
     "buffer_backends": Api(_LYRICAL, "create_subscription(acceptable_buffer_backends=)"),
+    "every_clock": Api(_LYRICAL, "Clock.ros_time_is_active or set_ros_time_override(), but for a ROSClock"),
+    "publisher_class": Api(_LYRICAL, "create_lifecycle_publisher(publisher_class=)"),
+    "on_new_callbacks": Api(_LYRICAL, "set_on_new_message_callback() of a handle, or its kin"),
     "executing": Api(_LYRICAL, "ServerGoalHandle.executing()"),
 }
 """By the name that `uses` gets."""
@@ -113,7 +116,10 @@ CHANGES: Final[dict[str, Change]] = {
     "second_execute": Change(
         _LYRICAL, "`execute` of a goal that executes or has ended", "RCLError", "nothing happens"
     ),
-    "old_names": Change(_LYRICAL, "`import rclpy.qos_event`", "a DeprecationWarning", "ModuleNotFoundError"),
+    "old_names": Change(
+        _LYRICAL, "`import rclpy.qos_event`, `rclpy.topic_endpoint_info`", "there", "ModuleNotFoundError"
+    ),
+    "destroy": Change(_LYRICAL, "an entity after its `destroy()`", "its node lists it", "it does not"),
 }
 """By the name that `follows` gets."""
 
@@ -228,13 +234,13 @@ NAMES: Final[dict[Distro, dict[str, dict[str, str]]]] = {
             ),
             "",
         ),
-        "rclpy.client": {"BaseClient": ""},
-        "rclpy.clock": {"BaseClock": ""},
-        "rclpy.node": {"BaseNode": "", "ServiceEndpointInfo": "rclpy.impl.newer"},
-        "rclpy.publisher": {"BasePublisher": ""},
-        "rclpy.service": {"BaseService": ""},
-        "rclpy.subscription": {"BaseSubscription": ""},
-        "rclpy.timer": {"BaseTimer": ""},
+        "rclpy.client": {"BaseClient": "rclpy.client:_BaseClient"},
+        "rclpy.clock": {"BaseClock": "rclpy.clock:_BaseClock"},
+        "rclpy.node": {"BaseNode": "rclpy.node:_BaseNode", "ServiceEndpointInfo": "rclpy.impl.newer"},
+        "rclpy.publisher": {"BasePublisher": "rclpy.publisher:_BasePublisher"},
+        "rclpy.service": {"BaseService": "rclpy.service:_BaseService"},
+        "rclpy.subscription": {"BaseSubscription": "rclpy.subscription:_BaseSubscription"},
+        "rclpy.timer": {"BaseTimer": "rclpy.timer:_BaseTimer"},
     },
 }
 """Names of modules: where each is defined (`:` if it has another name there), or nothing if we lack it."""

@@ -32,11 +32,17 @@ _HOMES: dict[str, dict[str, str]] = {
     "rclpy.node": {"ListParameters": "rcl_interfaces.srv", "ParameterMsg": "rcl_interfaces.msg:Parameter"},
     "rclpy.parameter_event_handler": {"Parameter": "rclpy.parameter"},
     "rclpy.time_source": {"SetParametersResult": "rcl_interfaces.msg"},
-    "rclpy.topic_endpoint_info": {"QoSHistoryPolicy": "rclpy.qos"},
+    "rclpy.topic_endpoint_info": {
+        "QoSHistoryPolicy": "rclpy.qos",
+        "QoSPresetProfiles": "rclpy.qos",
+        "QoSProfile": "rclpy.qos",
+        "TypeHash": "rclpy.type_hash",
+    },
     "rclpy.type_description_service": {
         "GetTypeDescription": "type_description_interfaces.srv",
         "ParameterDescriptor": "rcl_interfaces.msg",
         "ParameterType": "rcl_interfaces.msg",
+        "Service": "rclpy.service",
         **_TYPE_CHECK,
     },
 }
@@ -52,6 +58,8 @@ def reexport(module: str) -> Callable[[str], Any]:
     for each in homes.values():
         if each.startswith("rclpy."):
             importlib.import_module(each)
+    if module == "rclpy.node" and not distro.follows("old_names"):
+        importlib.import_module("rclpy.topic_endpoint_info")
 
     def find(name: str) -> Any:
         home, _, name_at_home = (homes.get(name) or distro.home_of(module, name)).partition(":")

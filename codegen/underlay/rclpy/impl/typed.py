@@ -54,7 +54,7 @@ else:
 
     from rclpy.impl import distro
 
-    _PARAMETERS = {"ActionClient": 3, "ActionServer": 3, "Client": 2, "Service": 2}
+    _PARAMETERS = {"ActionClient": 3, "ActionServer": 3, "_BaseClient": 2, "_BaseService": 2}
     _PARAMETERS |= {"ClientGoalHandle": 3, "ServerGoalHandle": 3}
 
     class Generic:

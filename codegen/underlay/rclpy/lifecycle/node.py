@@ -153,6 +153,7 @@ class LifecycleNodeMixin(ManagedEntity):
             callback_group: CallbackGroup | None = None,
             event_callbacks: PublisherEventCallbacks | None = None,
             qos_overriding_options: QoSOverridingOptions | None = None,
+            publisher_class: type[LifecyclePublisher[MessageT]] | None = None,
         ) -> LifecyclePublisher[MessageT]:
             """Create a publisher that is silent unless the node is active."""
             raise NotImplementedError
@@ -165,9 +166,10 @@ class LifecycleNodeMixin(ManagedEntity):
             Arguments as for `Node.create_publisher`.
             """
             if "publisher_class" in kwargs:
-                raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
+                distro.uses("publisher_class")
+            kind = kwargs.pop("publisher_class", None) or LifecyclePublisher
             node: Any = self
-            publisher = Node.create_publisher(node, *args, **kwargs, publisher_class=LifecyclePublisher)
+            publisher = Node.create_publisher(node, *args, **kwargs, publisher_class=kind)
             assert isinstance(publisher, LifecyclePublisher)
             self._managed_entities.add(publisher)
             return publisher

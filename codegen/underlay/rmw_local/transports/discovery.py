@@ -40,6 +40,7 @@ _LATE: Final = (
     "ifgen_runtime.mismatch.limits",
     "ifgen_runtime.type_description",
     "importlib.util",
+    "rmw_local.content_filter",
     "rmw_local.mismatch.encounter",
     "rmw_local.mismatch.origin",
     "rmw_local.mismatch.passage",

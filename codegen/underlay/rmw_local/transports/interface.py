@@ -34,7 +34,8 @@ class Entity:
     `type_hash` is empty if there is none. `peer` is the id of its process, and `gid` its own (16 bytes): a
     transport fills them in. `stands_in` says that it is a further announcement of a subscription or a server,
     for another definition, whose messages it adapts. `refuses` says that a client or a server is not to be
-    adapted: its node refuses other definitions.
+    adapted: its node refuses other definitions. `content_filter` has expression and parameters of that of a
+    subscription: a publisher need not send what no subscription accepts.
     """
 
     kind: Kind
@@ -51,6 +52,7 @@ class Entity:
     gid: bytes = b""
     stands_in: bool = False
     refuses: bool = False
+    content_filter: tuple[str, tuple[str, ...]] | None = None
 
 
 OnEntity = Callable[[Entity, bool], None]

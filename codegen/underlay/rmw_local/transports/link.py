@@ -122,6 +122,19 @@ class Link:
             if each is not None:
                 each.close()
 
+    def show_anew(self, reader: Reader) -> None:
+        """Show a subscription with its new content filter; what is on its way to the old one is lost."""
+        with self._lock:
+            is_shown = reader in self._presences
+        if is_shown:
+            self.withdraw(reader)
+            with self._domain.lock:
+                topic = self._domain.topics.get(reader.topic)
+                for writer in topic.writers if topic else ():
+                    if isinstance(writer, RemoteWriter):
+                        writer.forget_arrivals(reader)
+            self.announce(reader)
+
     def attend_to(self, encounters: Iterable[Encounter]) -> None:
         """Adapt, and tell of encounters across processes, later and on other threads."""
         encounters = list(encounters)
@@ -146,7 +159,8 @@ class Link:
 
     def _show_again(self, mine: Reader | ServiceServer, encounter: Encounter) -> None:
         type_hash = encounter.theirs.kind.type_hash
-        entity = replace(self._described(mine), type_hash=type_hash, stands_in=True)
+        described = replace(self._described(mine), content_filter=None)  # it filters what it has adapted
+        entity = replace(described, type_hash=type_hash, stands_in=True)
         presence = self._presences[mine]
         if isinstance(presence, ShownServer) and encounter.converting is not None:
             presence.adapt(entity, encounter.converting)
@@ -187,6 +201,7 @@ class Link:
             return describe(Kind.NODE, node_id, node_id)
         name, kind, qos = _interface_of(entity)
         is_of_service = isinstance(entity, ServiceEndpoint)
+        wanted = entity.content_filter if isinstance(entity, Reader) else None
         return describe(
             _kind(entity),
             node_id,
@@ -196,6 +211,7 @@ class Link:
             type_hash=kind.type_hash,
             qos=qos,
             refuses=is_of_service and node.on_type_mismatch == "refuse",
+            content_filter=None if wanted is None else (wanted.expression, wanted.parameters),
         )
 
     # What arrives, on the transport's threads

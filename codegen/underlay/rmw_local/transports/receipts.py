@@ -51,7 +51,7 @@ class _Debts:
 
     def __init__(self, writer: Writer) -> None:
         self._writer = writer
-        self._number = number = writer.last_number
+        self._number = number = writer.last_elsewhere
         # Nobody is owed this one and older ones: newer ones have taken their places.
         self._overwritten = max(0, number - (writer.qos.queue_length or number))
         self._peers = {

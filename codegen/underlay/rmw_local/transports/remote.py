@@ -35,12 +35,12 @@ class Arrivals:
         self.last = first
         self.newest_lost = 0
 
-    def note(self, number: int) -> int:
+    def note(self, number: int, *, has_gaps: bool = False) -> int:
         """Note a message; returns how many have been lost since the one before it.
 
-        One that comes twice, or late, tells of no loss.
+        One that comes twice, or late, tells of no loss, nor does a gap where the publisher filters.
         """
-        lost = number - self.last - 1
+        lost = min(number - self.last - 1, 0) if has_gaps else number - self.last - 1
         if lost > 0:
             self.newest_lost = number - 1
         if lost >= 0:
@@ -107,7 +107,7 @@ class RemoteWriter(Writer):
         arrivals = self._arrivals.get(reader)
         if arrivals is None:
             self._arrivals[reader] = Arrivals(number)
-        elif lost := arrivals.note(number):
+        elif lost := arrivals.note(number, has_gaps=reader.content_filter is not None):
             reader.message_lost.add(lost)
             reader.message_lost.notify()
 
@@ -117,8 +117,12 @@ class RemoteWriter(Writer):
         return Receipt(gid, 0, 0) if arrivals is None else Receipt(gid, arrivals.last, arrivals.newest_lost)
 
     def disconnect(self, reader: Reader) -> None:
-        """Part from a reader: what comes when they meet again has no connection with what came before."""
+        """Part from a reader."""
         super().disconnect(reader)
+        self.forget_arrivals(reader)
+
+    def forget_arrivals(self, reader: Reader) -> None:
+        """Let what comes when they meet again have no connection with what came before."""
         self._arrivals.pop(reader, None)
 
     def note_life(self) -> None:
@@ -138,6 +142,7 @@ class RemoteReader(Reader):
         self.peer = entity.peer
         self.gid = entity.gid
         self.stands_in = entity.stands_in
+        self.filter_elsewhere = entity.content_filter
 
 
 class RemoteClient(ServiceClient):

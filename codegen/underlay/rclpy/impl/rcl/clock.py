@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import weakref
+from collections.abc import Callable
 from typing import Protocol, SupportsInt, TypedDict
 
 from rmw_local import timing
@@ -251,6 +252,8 @@ class Timer(Destroyable, ReadySource):
         self._next_call = self._last_call + self._period
         self._credit = 0  # what was left of the period when the source of time changed
         self._canceled = not as_bool(autostart, "autostart")
+        self._on_reset: Callable[[int], object] | None = None
+        self._resets = 0  # those that no callback has been told of
         if clock.type is ClockType.ROS_TIME:
             clock.attach_timer(self)
 
@@ -307,6 +310,24 @@ class Timer(Destroyable, ReadySource):
         self._next_call = self._clock.now_ns() + self._period
         self._canceled = False
         self.notify()
+        if self._on_reset is None:
+            self._resets += 1
+        else:
+            self._on_reset(1)
+
+    def set_on_reset_callback(self, callback: Callable[[int], object]) -> None:
+        """Call back with the number of resets, on the thread that resets; at once with those before."""
+        distro.uses("on_new_callbacks")
+        if not callable(callback):
+            raise TypeError(f"expected a callback that takes a number, got {callback!r}")
+        self._on_reset = callback
+        resets, self._resets = self._resets, 0
+        if resets:
+            callback(resets)
+
+    def clear_on_reset_callback(self) -> None:
+        """End it."""
+        self._on_reset = None
 
     def get_timer_period(self) -> int:
         """The period."""

@@ -10,6 +10,8 @@ from rmw_local.graph import GraphNode, TypeConflictError
 from rmw_local.qos import QosProfile, unknown_policy
 from rmw_local.ready import Listener, ReadySource
 
+from rclpy.impl import distro
+
 from .handle import Destroyable, RCLError
 from .node import Node
 
@@ -79,6 +81,7 @@ class SourceHandle(Destroyable, ReadySource):
         Destroyable.__init__(self)
         ReadySource.__init__(self)
         self._source = ReadySource()
+        self._arrival_listener: Listener | None = None
 
     def _use(self, source: ReadySource) -> None:
         """Be ready when `source` is."""
@@ -109,6 +112,33 @@ class SourceHandle(Destroyable, ReadySource):
     def remove_listeners(self, unwanted: Callable[[Listener], bool]) -> None:
         """Remove the listeners for which this is true."""
         self._source.remove_listeners(unwanted)
+
+    def _call_on_arrival(self, callback: Callable[[int], object] | None) -> None:
+        """Call back with the number of things that have arrived: at once with those that wait already.
+
+        Later calls are made by the thread that brings them. None ends it.
+        """
+        distro.uses("on_new_callbacks")
+        if self._arrival_listener is not None:
+            self._source.remove_listener(self._arrival_listener)
+            self._arrival_listener = None
+        if callback is None:
+            return
+        if not callable(callback):
+            raise TypeError(f"expected a callback that takes a number, got {callback!r}")
+        self._arrival_listener = partial(_call_with_one, callback)
+        self._source.add_listener(self._arrival_listener)
+        if waiting := self._count_waiting():
+            callback(waiting)
+
+    def _count_waiting(self) -> int:
+        """The number of things that wait to be taken."""
+        return int(self._source.is_ready())
+
+
+def _call_with_one(callback: Callable[[int], object]) -> None:
+    """Call back about one thing that has arrived."""
+    callback(1)
 
 
 def _resolve(node: object, name: str, kind: str) -> tuple[Node, str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from ifgen_runtime.errors import ServerGoneError
@@ -52,6 +52,9 @@ class _ServiceHandle(SourceHandle, EndpointHandle):
             introspection_state,
         )
 
+    def _count_waiting(self) -> int:
+        return self._endpoint.unread
+
     def _on_destroy(self) -> None:
         super()._on_destroy()
         if self._introspection is not None:
@@ -74,6 +77,14 @@ class Client(_ServiceHandle):
         )
         self._endpoint = self._client
         self._use(self._client)
+
+    def set_on_new_response_callback(self, callback: Callable[[int], object]) -> None:
+        """Call back with the number of new responses, on the thread that brings them."""
+        self._call_on_arrival(callback)
+
+    def clear_on_new_response_callback(self) -> None:
+        """End it."""
+        self._call_on_arrival(None)
 
     @property
     def service_name(self) -> str:
@@ -141,6 +152,14 @@ class Service(_ServiceHandle):
         )
         self._endpoint = self._server
         self._use(self._server)
+
+    def set_on_new_request_callback(self, callback: Callable[[int], object]) -> None:
+        """Call back with the number of new requests, on the thread that brings them."""
+        self._call_on_arrival(callback)
+
+    def clear_on_new_request_callback(self) -> None:
+        """End it."""
+        self._call_on_arrival(None)
 
     @property
     def name(self) -> str:

@@ -170,6 +170,17 @@ class Subscription(SourceHandle, EndpointHandle):
             raise RCLError("Failed to get cft expression parameters: content filter is not set")
         return wanted.expression, list(wanted.parameters)
 
+    def set_on_new_message_callback(self, callback: Callable[[int], object]) -> None:
+        """Call back with the number of new messages, on the thread that brings them."""
+        self._call_on_arrival(callback)
+
+    def clear_on_new_message_callback(self) -> None:
+        """End it."""
+        self._call_on_arrival(None)
+
+    def _count_waiting(self) -> int:
+        return int(self._reader.unread)
+
     def use_views(self) -> None:
         """Leave sequences of numbers in the bytes that all subscriptions share, from now on."""
         self._reader.refuse_parcels()

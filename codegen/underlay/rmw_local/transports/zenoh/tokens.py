@@ -4,8 +4,10 @@ A topic's messages, and a service's requests and responses, have the key `<domai
 
 A token is `@ros2_lv/<domain>/<session>/<node id>/<entity id>/<kind>/<enclave>/<namespace>/<node>`, and for
 endpoints `/<name>/<type>/<hash>/<qos>`. What follows after that is newer than we are, and is ignored, but for
-two words of our own. `/ifgen_adapts` ends a further token of a subscription or a server, with the hash of a
+three words of our own. `/ifgen_adapts` ends a further token of a subscription or a server, with the hash of a
 definition that it adapts. `/ifgen_refuses` ends the token of a client or a server that nobody is to adapt.
+`/ifgen_filter/...` ends that of a subscription with a content filter, which follows as JSON in base64, unless
+the token becomes too long.
 
 A QoS profile is `reliability:durability:history,depth:deadline:lifespan:liveliness,lease`, durations as
 `s,ns`. A value that equals rmw_zenoh's default is left out.
@@ -13,6 +15,8 @@ A QoS profile is `reliability:durability:history,depth:deadline:lifespan:livelin
 
 from __future__ import annotations
 
+import base64
+import json
 import re
 from dataclasses import replace
 from typing import Final
@@ -165,6 +169,7 @@ _CROWD: Final = "@ifgen_lv"
 _BRANCHES, _TWIGS = 8, 64
 _STANDS_IN: Final = "ifgen_adapts"
 _REFUSES: Final = "ifgen_refuses"
+_FILTER: Final = "ifgen_filter"
 _LONGEST: Final = 2048  # characters; names of ROS have at most 255
 _NODE_PARTS, _ENDPOINT_PARTS = 9, 13
 _KIND: Final = re.compile("|".join(Kind))
@@ -222,6 +227,11 @@ def write(domain: int, session: str, entity: Entity) -> str:
             parts.append(_STANDS_IN)
         if entity.refuses:
             parts.append(_REFUSES)
+        if entity.content_filter is not None:
+            text = base64.urlsafe_b64encode(json.dumps(entity.content_filter).encode()).decode()
+            further = [_FILTER, text.rstrip("=")]
+            if len("/".join([*parts, *further])) <= _LONGEST:
+                parts += further
     return "/".join(parts)
 
 
@@ -258,7 +268,23 @@ def read(token: str) -> Entity:
         qos=read_qos(profile),
         stands_in=_STANDS_IN in parts[_ENDPOINT_PARTS:],
         refuses=_REFUSES in parts[_ENDPOINT_PARTS:],
+        content_filter=_filter_in(parts[_ENDPOINT_PARTS:]),
     )
+
+
+def _filter_in(words: list[str]) -> tuple[str, tuple[str, ...]] | None:
+    """The content filter that a token names; None for what is none: then everything is sent."""
+    if _FILTER not in words[:-1]:
+        return None
+    text = words[words.index(_FILTER) + 1]
+    try:
+        found = json.loads(base64.urlsafe_b64decode(text + "=" * (-len(text) % 4)))
+    except (ValueError, RecursionError):
+        return None
+    match found:
+        case [str(expression), list(parameters)] if all(isinstance(each, str) for each in parameters):
+            return expression, tuple(parameters)
+    return None
 
 
 def session_of(token: str) -> str:
