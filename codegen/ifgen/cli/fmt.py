@@ -12,7 +12,7 @@ import click
 from ifgen.command_kit import terminal
 from ifgen.command_kit.options import EXISTING_OR_DASH, quiet_option
 from ifgen.config.settings import settle
-from ifgen.diagnostics import Diagnostic, InputError, Source, UsageError, shown_path
+from ifgen.diagnostics import Diagnostic, InputError, Source, shown_path
 from ifgen.signals import sigterm_raises
 
 # Late imports: `ifgen --help` loads this module, and does without the parsers.
@@ -68,18 +68,16 @@ def _standard_input(name: Path | None) -> int:
     from ifgen.formatting import formatted, has_style
 
     if name is None or not has_style(name):
-        raise UsageError([_no_kind(name)])
+        raise click.UsageError(_no_kind(name), click.get_current_context())
     before = sys.stdin.buffer.read().decode("utf-8")
     text = formatted(Source(name, before.replace("\r\n", "\n")))
     sys.stdout.buffer.write(_with_ends_of(before, text).encode())
     return 0
 
 
-def _no_kind(name: Path | None) -> Diagnostic:
+def _no_kind(name: Path | None) -> str:
     found = "standard input has no name" if name is None else f"no file called '{name}' has a style"
-    return Diagnostic(
-        rule="usage", message=found, help="say what it is: `--stdin-filename Pose.msg`, for example"
-    )
+    return f"{found}: say what it is, with `--stdin-filename Pose.msg` for example"
 
 
 def _files(paths: Sequence[Path]) -> Iterator[Path]:
@@ -90,15 +88,8 @@ def _files(paths: Sequence[Path]) -> Iterator[Path]:
         if not path.is_dir():
             if not has_style(path):
                 ends = ", ".join(EXTENSIONS)
-                raise UsageError(
-                    [
-                        Diagnostic(
-                            rule="usage",
-                            message=f"{shown_path(path)} has no style",
-                            help=f"the names of files with one end with {ends}",
-                        )
-                    ]
-                )
+                message = f"{shown_path(path)} has no style: the names of files with one end with {ends}"
+                raise click.UsageError(message, click.get_current_context())
             yield path
             continue
         for folder, folders, names in os.walk(path):

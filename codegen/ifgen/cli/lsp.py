@@ -8,8 +8,6 @@ import sys
 
 import click
 
-from ifgen.diagnostics import Diagnostic, UsageError
-
 # Late imports: the server needs the extra `lsp`, and `ifgen --help` loads this module.
 
 
@@ -26,15 +24,8 @@ def lsp() -> int:
     except ModuleNotFoundError as error:
         if error.name not in {"pygls", "lsprotocol"}:
             raise
-        raise UsageError(
-            [
-                Diagnostic(
-                    "missing-extra",
-                    "the language server needs pygls, which is not installed",
-                    help="pip install 'ifgen-ros[lsp]'",
-                )
-            ]
-        ) from None
+        message = "the language server needs pygls, which is not installed: pip install 'ifgen-ros[lsp]'"
+        raise click.UsageError(message, click.get_current_context()) from None
     # A request that cannot be met has its answer: what pygls would log besides is no fault of ours.
     logging.getLogger("pygls").addFilter(_is_fault)
     logging.getLogger("pygls.protocol.json_rpc").addFilter(_is_fault)

@@ -110,7 +110,7 @@ def _check(workspace: Workspace, symbol: Symbol, name: str) -> None:
         part = next(each for each in parts_of(interface) if each.type_name == symbol.type_name)
         taken = {each.name for each in members_of(part)}
     if name in taken:
-        raise InputError([Diagnostic("duplicate-name", f"{symbol.type_name} has a '{name}' already")])
+        raise InputError([Diagnostic("duplicate-field", f"{symbol.type_name} has a '{name}' already")])
 
 
 def _rename_type(workspace: Workspace, type_name: str, name: str, renaming: Renaming) -> None:
