@@ -172,7 +172,7 @@ def _two_types(name: str, endpoint: Endpoint, first: Endpoint) -> Diagnostic:
 def _same_when_expanded(name: str, endpoint: Endpoint, first: Endpoint) -> Diagnostic:
     """Say that two names are one once they are expanded."""
     return Diagnostic(
-        "duplicate-endpoint",
+        "same-endpoint",
         f"there are two {endpoint.category.singular}s named `{name}`",
         _label(endpoint.span, f"this is `{name}`"),
         _labels(first.span, "and so is this"),
