@@ -125,7 +125,7 @@ ENDPOINTS = [
     ("wrong-value", endpoint("qos: {history: ⟦5⟧, reliability: RELIABLE}"), "KEEP_ALL"),
     ("wrong-value", endpoint("qos: {history: KEEP_LAST, depth: ⟦0⟧, reliability: RELIABLE}"), "`depth` must be 1 or more this is 0"),
     ("too-large-number", endpoint("qos: {history: KEEP_LAST, depth: ⟦2147483648⟧, reliability: RELIABLE}"), "must be 2147483647 or less"),
-    ("wrong-value", endpoint(f"qos: {{history: KEEP_LAST, depth: ⟦0x{'f' * 5000}⟧, reliability: RELIABLE}}"), "or less this is 0xff"),
+    ("too-large-number", endpoint(f"qos: {{history: KEEP_LAST, depth: ⟦0x{'f' * 5000}⟧, reliability: RELIABLE}}"), "or less this is 0xff"),
     ("wrong-value", endpoint("qos: {history: KEEP_LAST, depth: ⟦true⟧, reliability: RELIABLE}"), "from 1"),
     ("wrong-value", endpoint("qos: {history: KEEP_LAST, depth: ⟦1e1⟧, reliability: RELIABLE}"), "write `1.0e+1`"),
     ("wrong-value", endpoint("qos: {history: KEEP_ALL, reliability: RELIABLE, deadline_ns: ⟦-1⟧}"), "`deadline_ns` must be 0 or more this is -1 to leave it open, write 0"),

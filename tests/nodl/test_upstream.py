@@ -44,6 +44,7 @@ ACCEPTED = [
     "codegen: {}",
     "codegen: {cpp: {}, rust: {anything: [1, {a: b}]}}",
     "codegen: {cpp: {role: base_class}}",
+    "codegen: {ifgen: {style: unheard, timers: 5, anything: [1]}}",
     "codegen: {cpp: {role: NODE, namespace: demo}}",
     "codegen: {python: {role: NO_GENERATE}}",
     "include: []",

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
-from ifgen.diagnostics import Diagnostic, Label
+from ifgen.diagnostics import Diagnostic, Label, Span
 from ifgen.nodl.load import Loaded, load_document
 from ifgen.reading.search_path import SearchPath
 
@@ -56,7 +56,10 @@ def verdict(path: Path, search: SearchPath, *, follow: bool = True, strict: bool
         found += _foreign_types(loaded)
     if not follow:
         found = [each for each in found if not _is_about_others(each, path)]
-    errors = tuple(each for each in found if _is_error(each, strict=strict))
+    free = _free_spans(loaded)
+    errors = tuple(
+        each for each in found if _is_error(each, strict=strict) and (strict or not _is_in(each, free))
+    )
     return Verdict(loaded, errors, tuple(_as_warnings(each for each in found if each not in errors)))
 
 
@@ -66,6 +69,18 @@ def _foreign_types(loaded: Loaded) -> Iterator[Diagnostic]:
         if "_" in endpoint.type_name.rpartition("/")[2] and endpoint.span is not None:
             message = f"NoDL does not allow the underscore in `{endpoint.type_name}`"
             yield Diagnostic("invalid-type", message, Label(endpoint.span), help="rename the interface")
+
+
+def _free_spans(loaded: Loaded | None) -> list[Span]:
+    """The parts of documents that NoDL does not look at: `codegen.ifgen`."""
+    return [each.options.span for each in loaded.documents if each.options] if loaded else []
+
+
+def _is_in(diagnostic: Diagnostic, spans: Iterable[Span]) -> bool:
+    place = diagnostic.primary.span if diagnostic.primary else None
+    return place is not None and any(
+        place.source is span.source and span.start <= place.start and place.end <= span.end for span in spans
+    )
 
 
 def _is_error(diagnostic: Diagnostic, *, strict: bool) -> bool:
