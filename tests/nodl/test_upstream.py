@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 from ifgen import generate
+from ifgen.nodl import resolvers
 from ifgen.nodl.barriers import OFFICIAL
 from ifgen.nodl.load import Loaded
 from ifgen.nodl.names import expanded
@@ -310,3 +312,42 @@ def test_the_installed_document_keeps_includes_and_codegen(tmp_path: Path) -> No
     assert "class TalkerBase(LifecycleNode):" in code
     assert "create_lifecycle_publisher" in code
     assert "tf" not in code
+
+
+class Shelf:
+    """A resolver of `shelf://NAME`, and of a `local://` that it shadows."""
+
+    def handles(self, ref: str) -> bool:
+        return ref.startswith(("shelf://", "local://shadowed"))
+
+    def resolve(self, ref: str, origin: Path) -> Path:
+        name = ref.partition("://")[2]
+        if name == "fails":
+            raise KeyError(name)
+        return origin.parent / ("part.nodl.yaml" if name != "gone" else "gone.nodl.yaml")
+
+
+def test_resolvers(folder: Path) -> None:
+    """The newest comes first, before those of ifgen, as in nodl_schema."""
+    with resolvers.resolver_registered(Shelf()):
+        for reference in ("shelf://part", "local://shadowed"):
+            loaded = merged(folder, f"include: [{{ref: '{reference}'}}]")
+            assert [endpoint.name for endpoint in loaded.whole.endpoints] == ["/part"]
+        for reference, said in (("shelf://fails", "KeyError: 'fails'"), ("shelf://gone", "there is no file")):
+            [error] = judge(folder, document(f"include: [{{ref: '{reference}'}}]")).errors
+            assert said in error.message
+            assert error.rule == "unknown-include"
+    assert judge(folder, document("include: [{ref: 'shelf://part'}]")).errors
+
+
+def test_an_installed_resolver(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = EntryPoint("shelf", f"{__name__}:Shelf", resolvers.GROUP)
+    monkeypatch.setattr(resolvers, "_installed", lambda: (found.load()(),))
+    assert merged(folder, "include: [{ref: 'shelf://part'}]").whole.endpoints
+
+
+def test_what_is_no_resolver() -> None:
+    with pytest.raises(TypeError, match="`handles` and `resolve`"):
+        resolvers.register_resolver(5)  # type: ignore[arg-type]
+    with pytest.raises(LookupError):
+        resolvers.unregister_resolver(Shelf())
