@@ -127,10 +127,7 @@ def instantiate(
         )
 
     found = [endpoint(each, id(each) in inherited) for each in own]
-    found += (endpoint(each, True) for each in framework)
-    return tuple({(each.category, each.name, each.type_name): each for each in reversed(found)}.values())[
-        ::-1
-    ]
+    return (*found, *(endpoint(each, True) for each in framework))
 
 
 def _evaluate(request: Request, output: Path) -> Launched:
@@ -169,6 +166,7 @@ def _instance(
         endpoints=instantiate(description, name, launched.remaps, documents) if description else (),
         parameters=tuple(_parameters(launched, name, files, request.parameter_files)),
         remaps=launched.remaps,
+        arguments=launched.arguments,
         is_managed=launched.is_managed,
         problem=_problem(launched, documents),
         span=launched.span,

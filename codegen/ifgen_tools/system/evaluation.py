@@ -87,6 +87,7 @@ class LaunchedNode:
     kind: NodeKind
     remaps: tuple[Remap, ...]
     parameters: tuple[GivenValues | GivenFile, ...]
+    arguments: tuple[str, ...] = ()
     is_managed: bool = False
     missing: LaunchError | None = None
     """The reason why its executable cannot be started."""
@@ -249,7 +250,7 @@ class Evaluation:
         node.expand_names(self.context)
         executable = performed(self.context, node.executable)
         package = "" if node.package is None else performed(self.context, node.package)
-        words = (performed(self.context, each) for each in node.arguments)
+        words = [performed(self.context, each) for each in node.arguments]
         ros_words = (performed(self.context, each) for each in node.ros_arguments)
         own = _of_words([*words, "--ros-args", *ros_words])
         name, namespace = node.expanded_node_name, node.expanded_node_namespace
@@ -276,6 +277,7 @@ class Evaluation:
                 ),
                 *(GivenFile(Path(file), self.places.span(node.place, file)) for file in own.files),
             ),
+            arguments=tuple(words),
             is_managed=is_managed,
             missing=self._missing(package, executable),
             place=node.place,

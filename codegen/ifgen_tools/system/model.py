@@ -83,6 +83,7 @@ class NodeInstance:
     endpoints: tuple[Endpoint, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     remaps: tuple[Remap, ...] = ()
+    arguments: tuple[str, ...] = ()
     is_managed: bool = False
     problem: Diagnostic | None = field(default=None, compare=False, repr=False)
     span: Span | None = field(default=None, compare=False, repr=False)
