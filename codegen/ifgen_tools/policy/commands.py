@@ -167,7 +167,7 @@ def _grants(
         raise InputError(errors)
     for node in built.system.open_ends:
         click.echo(f"warning: {node.name} has no document, so it may do nothing", err=True)
-    return of_system(built.system)
+    return of_system(built.system, built.registry)
 
 
 def _domain_of(chosen: int | None) -> int:

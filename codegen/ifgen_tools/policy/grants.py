@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Final
 
+from ifgen.definition.interfaces import Registry
+from ifgen.definition.type_description import TypeHashes, described_types
+from ifgen.nodl.load import registry_of
 from ifgen.nodl.model import Category
 from ifgen.nodl.syntax.tree import ScalarNode
+from ifgen.reading.search_path import SearchPath
 
 from ifgen_tools.system.model import Endpoint, NodeInstance, System
 
 _TYPE_DESCRIPTION: Final = "type_description_interfaces/srv/GetTypeDescription"
 _CLOCK: Final = "rosgraph_msgs/msg/Clock"
+_CANCEL: Final = "action_msgs/srv/CancelGoal"
+_STATUS: Final = "action_msgs/msg/GoalStatusArray"
+_OF_ROS: Final = (_TYPE_DESCRIPTION, _CLOCK, _CANCEL, _STATUS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,32 +40,45 @@ class Grant:
 
 @dataclass(frozen=True, slots=True)
 class Grants:
-    """All that a node of this full name may do. Its process has the identity `enclave`."""
+    """All that a node of this full name may do. Its process has the identity `enclave`.
+
+    `parts` are the same, but with the services and topics of actions in place of actions.
+    """
 
     node: str
     enclave: str
     grants: tuple[Grant, ...]
-
-    @property
-    def parts(self) -> tuple[Grant, ...]:
-        """The same, but with the services and topics of actions in place of actions."""
-        return tuple(part for grant in self.grants for part in _parts(grant))
+    parts: tuple[Grant, ...]
 
 
-def of_system(system: System) -> list[Grants]:
-    """The grants of each node, in the order of their names. Nodes without a document have none."""
+def of_system(system: System, registry: Registry) -> list[Grants]:
+    """The grants of each node, in the order of their names. Nodes without a document have none.
+
+    `registry` has the definitions of what the documents name.
+    """
     described = (node for node in system.nodes if node.endpoints)
-    return [_of_node(node) for node in sorted(described, key=lambda node: node.name)]
+    hashes = {**_hashes(registry_of(_OF_ROS, SearchPath())), **_hashes(registry)}
+    return [_of_node(node, hashes) for node in sorted(described, key=lambda node: node.name)]
 
 
-def _of_node(node: NodeInstance) -> Grants:
-    found = dict.fromkeys([*map(_grant, node.endpoints), *_of_every_node(node)])
-    return Grants(node.name, _enclave(node), tuple(found))
+def _hashes(registry: Registry) -> dict[str, str]:
+    """The hash of each type, and of those that services and actions consist of."""
+    hashes = TypeHashes(registry)
+    return {each.type_name: hashes.of(each) for interface in registry for each in described_types(interface)}
+
+
+def _of_node(node: NodeInstance, hashes: Mapping[str, str]) -> Grants:
+    def known(found: Iterable[Grant]) -> tuple[Grant, ...]:
+        return tuple(dict.fromkeys(replace(g, type_hash=hashes.get(g.type_name, "")) for g in found))
+
+    grants = [*map(_grant, node.endpoints), *_of_every_node(node)]
+    parts = (part for grant in grants for part in _parts(grant))
+    return Grants(node.name, _enclave(node), known(grants), known(parts))
 
 
 def _grant(end: Endpoint) -> Grant:
     is_kept = end.qos is not None and end.qos.durability not in {None, "VOLATILE"}
-    return Grant(end.category, end.name, end.type_name, end.type_hash, is_kept or end.name == "/rosout")
+    return Grant(end.category, end.name, end.type_name, is_kept=is_kept or end.name == "/rosout")
 
 
 def _of_every_node(node: NodeInstance) -> Iterator[Grant]:
@@ -86,6 +106,6 @@ def _parts(grant: Grant) -> Iterator[Grant]:
     hidden = f"{grant.name}/_action"
     yield Grant(service, f"{hidden}/send_goal", f"{grant.type_name}_SendGoal")
     yield Grant(service, f"{hidden}/get_result", f"{grant.type_name}_GetResult")
-    yield Grant(service, f"{hidden}/cancel_goal", "action_msgs/srv/CancelGoal")
+    yield Grant(service, f"{hidden}/cancel_goal", _CANCEL)
     yield Grant(topic, f"{hidden}/feedback", f"{grant.type_name}_FeedbackMessage")
-    yield Grant(topic, f"{hidden}/status", "action_msgs/msg/GoalStatusArray", is_kept=True)
+    yield Grant(topic, f"{hidden}/status", _STATUS, is_kept=True)
