@@ -180,7 +180,7 @@ def plainly_merged(path: Path) -> dict[str, Any]:
         for reference in (each["ref"] for each in read.get("include", ())):
             scheme, _, rest = reference.partition("://")
             official = tuple(rest.split("/", 1))
-            queue.append(OFFICIAL[official] if scheme == "nodl" else current.parent / rest)  # type: ignore[index]
+            queue.append(OFFICIAL[official] if scheme == "nodl" else current.parent / rest)
     return {key: value for key, value in merged.items() if value}
 
 

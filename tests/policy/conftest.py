@@ -1,4 +1,4 @@
-"""A robot of five nodes with each kind of endpoint."""
+"""A robot of five nodes with each kind of endpoint, and the humanoid."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from ifgen_tools.policy.grants import Grants
 from ifgen_tools.system.build import Request, build
 
 HERE = Path(__file__).parent
+ROOT = HERE.parents[1]
 DOMAIN = 28
 
 
@@ -17,4 +18,11 @@ DOMAIN = 28
 def robot() -> list[Grants]:
     built = build(Request(launch_files=(HERE / "robot.launch.py",), arguments={}, packages=(HERE / "robot",)))
     assert not built.findings
+    return grants.of_system(built.system, built.registry)
+
+
+@pytest.fixture(scope="session")
+def humanoid() -> list[Grants]:
+    launch = ROOT / "examples/humanoid/launch/humanoid.launch.py"
+    built = build(Request(launch_files=(launch,), arguments={}, packages=(ROOT / "interfaces",)))
     return grants.of_system(built.system, built.registry)

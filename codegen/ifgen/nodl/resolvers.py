@@ -38,7 +38,7 @@ def register_resolver(resolver: Resolver) -> Resolver:
 
     Raises TypeError for an object that is none.
     """
-    if not isinstance(resolver, Resolver):
+    if not isinstance(resolver, Resolver):  # pyright: ignore[reportUnnecessaryIsInstance] - no typed caller
         raise TypeError(f"{resolver!r} is not a resolver: it needs the methods `handles` and `resolve`")
     _registered.append(resolver)
     return resolver

@@ -157,7 +157,8 @@ def message_class(name: str) -> type[Any]:
 
 def node_from(message: Any) -> tuple[str, list[Endpoint], list[RunningParameter]]:
     """The full name, the endpoints and the parameters in a message."""
-    from ifgen_tools.texts.formats import WHOLE, plain
+    from ifgen_tools.texts.formats import plain
+    from ifgen_tools.texts.style import WHOLE
 
     return _node(plain(message, WHOLE))
 
@@ -262,7 +263,7 @@ def _fill_qos(qos: Any, seen: QosProfile | None) -> None:
     }
     for policy, words in numbers.items():
         by_word = {word: number for number, word in words.items()}
-        word = getattr(seen, policy) if seen else None
+        word = str(getattr(seen, policy, None))
         setattr(qos, policy, by_word.get(word, _UNKNOWN[policy]))
     if seen is None:
         return
@@ -276,7 +277,8 @@ def _fill_qos(qos: Any, seen: QosProfile | None) -> None:
 def _of_bag(path: Path) -> dict[str, Any]:
     from ifgen_runtime.bag import Bag, BagError
 
-    from ifgen_tools.texts.formats import WHOLE, plain
+    from ifgen_tools.texts.formats import plain
+    from ifgen_tools.texts.style import WHOLE
 
     try:
         with Bag(path) as bag:

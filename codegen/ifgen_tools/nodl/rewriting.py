@@ -41,11 +41,10 @@ def merged(loaded: Loaded, *, as_json: bool = False) -> str:
     for parameter in loaded.whole.parameters:
         if parameter.name not in parameters:
             parameters.update(_expanded(parameter, loaded))
-        if parameter.default is not None:
-            is_list = isinstance(parameter.default, tuple | bytes)
-            parameters[parameter.name]["default_value"] = (
-                list(parameter.default) if is_list else parameter.default
-            )
+        default = parameter.default
+        if default is not None:
+            value = list(default) if isinstance(default, tuple | bytes) else default
+            parameters[parameter.name]["default_value"] = value
     found.update({name: value for name, value in {"parameters": parameters, **lists}.items() if value})
     return output.as_json(found, []) if as_json else output.as_yaml(found, [])
 

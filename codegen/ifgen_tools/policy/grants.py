@@ -1,4 +1,4 @@
-"""What each node of a system may do: what its document declares and what every node does, and no more."""
+"""The rights of each node of a system: all that its document declares and that every node has, no more."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _grant(end: Endpoint) -> Grant:
 
 
 def _of_every_node(node: NodeInstance) -> Iterator[Grant]:
-    """What rclpy and rclcpp add beyond the official base documents."""
+    """The ends that rclpy and rclcpp add beyond the official base documents."""
     yield Grant(Category.SERVICE_SERVER, f"{node.name}/get_type_description", _TYPE_DESCRIPTION)
     simulated = node.value("use_sim_time")
     # A value that only the launch knows may be true.

@@ -75,7 +75,7 @@ def _fill(profile: ElementTree.Element, grants: Sequence[Grant]) -> None:
 
 
 def problems(policy: str) -> list[str]:
-    """What the schema of SROS 2 would refuse in a text, and names that it leaves to the middleware."""
+    """All that the schema of SROS 2 would refuse in a text; nothing if it is a policy."""
     try:
         root = ElementTree.fromstring(policy)
     except ElementTree.ParseError as error:

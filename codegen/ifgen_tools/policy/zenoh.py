@@ -97,7 +97,7 @@ def _written(name: str, rule: Rule, sent: Flow) -> dict[str, Any]:
 
 
 def _rules(nodes: Iterable[Grants], domain: int) -> Iterator[Rule]:
-    """What the nodes of a process may send, and what may be sent to them."""
+    """The messages that the nodes of a process may send, and those that may be sent to them."""
     parts = [part for node in nodes for part in node.parts]
 
     def keys(*categories: Category, kept: bool = False) -> tuple[str, ...]:

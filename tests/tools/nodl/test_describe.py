@@ -24,8 +24,8 @@ from ifgen.nodl.model import (
 )
 from ifgen.nodl.names import expanded
 from ifgen_tools import ros_graph
-from ifgen_tools.nodl.node_verbs import choose
 from ifgen_tools.nodl.document import as_json, as_yaml, document_of
+from ifgen_tools.nodl.node_verbs import choose
 from ifgen_tools.nodl.parameters import RunningParameter
 
 from tests.nodl.conftest import load_from
