@@ -69,6 +69,13 @@ def test_the_example_of_the_page() -> None:
     assert formatted(Source(Path("Step.msg"), before)) == after != before
 
 
+def test_new_files_are_in_the_style(ifgen: Run) -> None:
+    for name in ("demo_msgs/msg/Step", "demo_msgs/srv/Move", "demo_msgs/action/Walk"):
+        assert ifgen("new", "interface", name).code == 0
+    assert ifgen("new", "node", "demo_nodes/walker").code == 0
+    assert ifgen("fmt", "--check", ".").out == "0 files not in the style, of 4\n"
+
+
 def test_separators() -> None:
     text = "int8  a\n\n\n---\n\n\n#of b\nint8  b #c\n---\n"
     assert formatted(Source(Path("A.action"), text)) == "int8 a\n\n---\n\n# of b\nint8 b  # c\n---\n"
