@@ -17,7 +17,7 @@ from ifgen.reading.search_path import SearchPath
 
 from ifgen_tools.launching.commands import activate
 from ifgen_tools.system.documents import Documents
-from ifgen_tools.system.model import Command, Endpoint, NodeInstance, Parameter, Remap, System
+from ifgen_tools.system.model import Command, Endpoint, NodeInstance, NodeKind, Parameter, Remap, System
 from ifgen_tools.system.parameters import ParameterFiles, given
 
 if TYPE_CHECKING:
@@ -25,7 +25,13 @@ if TYPE_CHECKING:
 
 # Late imports: `launch` is found once the transport has been chosen.
 
-_CONTAINERS = ("component_container", "component_container_mt", "component_container_isolated")
+_KINDS: Mapping[str, NodeKind] = {
+    "component_container": "container",
+    "component_container_isolated": "container",
+    "component_container_mt": "container",
+    "static_transform_publisher": "transforms",
+}
+"""Programs that need no document."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -152,16 +158,13 @@ def _instance(
     launched: LaunchedNode, documents: Documents, files: ParameterFiles, request: Request
 ) -> NodeInstance:
     description = documents.of(launched.package, launched.executable, launched.name)
-    kind = launched.kind
-    if launched.executable in _CONTAINERS:
-        kind = "container"
     own_name = launched.name or (description.name if description else _stem(launched.executable))
     name = f"{launched.namespace.rstrip('/')}/{own_name}"
     return NodeInstance(
         name=name,
         package=launched.package,
         executable=launched.executable,
-        kind=kind,
+        kind=_KINDS.get(launched.executable, launched.kind),
         description=description,
         endpoints=instantiate(description, name, launched.remaps, documents) if description else (),
         parameters=tuple(_parameters(launched, name, files, request.parameter_files)),
@@ -182,7 +185,7 @@ def _problem(launched: LaunchedNode, documents: Documents) -> Diagnostic | None:
         return None
     if not is_package and launched.executable in documents.names(launched.package):
         return None
-    rule = "system-unknown-package" if is_package else "system-unknown-executable"
+    rule = "system-no-package" if is_package else "system-no-executable"
     label = Label(launched.span) if launched.span else None
     return Diagnostic(rule, launched.missing.message, label, help=launched.missing.help or None)
 

@@ -14,7 +14,6 @@ from ifgen_tools.system.model import Command, NodeInstance, Parameter, Remap
 from ifgen_tools.system.view import ALWAYS_THERE, SOURCES, View, at, finding, suggestion
 
 _KIND = {"msg": "a topic", "srv": "a service", "action": "an action"}
-_STATIC_TRANSFORMS = "static_transform_publisher"
 
 
 def unused_remaps(view: View) -> Iterator[Diagnostic]:
@@ -158,7 +157,7 @@ def sim_time(view: View) -> Iterator[Diagnostic]:
     senders = {end.node for end in clock.providers} if clock else set[str]()
     simulated = [(node, given) for node, _ in view.described if (given := _uses_sim_time(node)) is not None]
     on = [(node, given) for node, given in simulated if given.value and _truth(given)]
-    if on and not senders and not view.is_open and not view.system.commands:
+    if on and not senders and not view.is_open and not any(map(_may_simulate, view.system.commands)):
         node, given = on[0]
         yield finding(
             rule="system-sim-time",
@@ -254,6 +253,11 @@ def _managers(view: View) -> Iterator[tuple[NodeInstance, Parameter, list[str]]]
             yield node, given, [str(each.value) for each in items if isinstance(each, ScalarNode)]
 
 
+def _may_simulate(command: Command) -> bool:
+    """Whether a program that is no node may be a simulator: those of ROS are none."""
+    return bool(command.words) and command.words[0].rpartition("/")[2] not in {"ros2", "ifgen"}
+
+
 def _uses_sim_time(node: NodeInstance) -> Parameter | None:
     return node.value("use_sim_time")
 
@@ -267,7 +271,7 @@ def _transforms(view: View) -> Iterator[tuple[NodeInstance, str, str]]:
     for node in view.system.nodes:
         if node.description is not None:
             yield from ((node, child, parent) for child, parent in node.description.frames.broadcasts)
-        elif node.executable == _STATIC_TRANSFORMS:
+        elif node.kind == "transforms":
             named = dict(pairwise(node.arguments))
             if "--child-frame-id" in named and "--frame-id" in named:
                 yield node, named["--child-frame-id"], named["--frame-id"]
