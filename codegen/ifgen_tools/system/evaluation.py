@@ -170,6 +170,9 @@ class Evaluation:
             self.visit([include])
             while self._calls:
                 self._calls.popleft().fire()
+        except SystemExit as error:
+            ended = RuntimeError(f"SystemExit: {error}").with_traceback(error.__traceback__)
+            raise InputError([self._explained(explained(ended))]) from error
         except Exception as error:
             raise InputError([self._explained(explained(error))]) from error
         finally:

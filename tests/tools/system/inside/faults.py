@@ -136,7 +136,7 @@ def _of_parameters(built: Built) -> Iterator[Fault]:
             value = given.value
             if isinstance(value, ScalarNode) and value.span != span and declared.type.base != "string":
                 yield at("system-value-type", f"{node.name} {given.name}", value.span, "[wrong]")
-            elif isinstance(value, ListNode):
+            elif isinstance(value, ListNode) and value.span != span:
                 yield at("system-value-type", f"{node.name} {given.name}", value.span, "7")
 
 
