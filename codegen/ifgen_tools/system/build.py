@@ -36,7 +36,7 @@ _KINDS: Mapping[str, NodeKind] = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Request:
-    """What to build a system from.
+    """The files to build a system from.
 
     `arguments` are those of the launch files, `packages` the folders with documents (default: those in
     [tool.ifgen]), `parameter_files` what every node gets on top.

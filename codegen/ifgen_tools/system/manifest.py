@@ -22,7 +22,7 @@ _KEYS: Final = ("category", "name", "type", "hash", "qos", "version")
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """What a system offers and needs: its nodes, each with its endpoints but those that all nodes have.
+    """The offers and needs of a system: its nodes, with their endpoints but those that all nodes have.
 
     A node without a document is an open end, and has none. `source` is the file, if it was read from one.
     """
