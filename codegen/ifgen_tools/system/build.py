@@ -76,7 +76,9 @@ def build(request: Request) -> Built:
     hashes, registry = documents.hashes(types)
     managed = launched.managed
     system = System(
-        tuple(_finished(node, hashes, managed) for node in nodes), launched.commands, files.sections()
+        tuple(_finished(node, hashes, managed, documents) for node in nodes),
+        launched.commands,
+        files.sections(),
     )
     return Built(system, registry, (*dict.fromkeys(documents.findings), *files.findings))
 
@@ -208,8 +210,11 @@ def _parameters(
         yield from files.values(path, name)
 
 
-def _finished(node: NodeInstance, hashes: Mapping[str, str], managed: frozenset[str]) -> NodeInstance:
+def _finished(
+    node: NodeInstance, hashes: Mapping[str, str], managed: frozenset[str], documents: Documents
+) -> NodeInstance:
     """The node with the hashes of its types, and whether a transition manages it."""
-    endpoints = tuple(replace(each, type_hash=hashes.get(each.type_name, "")) for each in node.endpoints)
+    known = {**hashes, **(documents.locked(node.description) if node.description else {})}
+    endpoints = tuple(replace(each, type_hash=known.get(each.type_name, "")) for each in node.endpoints)
     is_managed = node.is_managed or node.name.rpartition("/")[2] in managed
     return replace(node, endpoints=endpoints, is_managed=is_managed)

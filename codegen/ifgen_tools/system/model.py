@@ -15,8 +15,8 @@ from ifgen.nodl.model import Category, NodeDescription, QosProfile, Terms
 from ifgen.nodl.syntax.tree import Node as Tree
 
 NodeKind: TypeAlias = Literal["process", "component", "container", "transforms", "running"]
-"""A node with a process of its own, one that a container loads, a container, a publisher of static transforms, or
-a node that was seen running. Containers and publishers of transforms need no document."""
+"""A node with a process of its own, one in a container, a container, a publisher of static transforms, or one
+that was seen running. Containers and publishers of transforms need no document."""
 
 
 @dataclass(frozen=True, slots=True)

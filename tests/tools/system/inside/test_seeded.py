@@ -10,6 +10,10 @@ from pathlib import Path
 import pytest
 from ifgen import resources
 from ifgen.diagnostics import InputError
+from ifgen.evolution.lock import text as lock_text
+from ifgen.nodl.load import registry_of
+from ifgen.reading.packages import find_packages
+from ifgen.reading.search_path import SearchPath
 from ifgen_tools.system.build import Built, Request, build
 from ifgen_tools.system.commands import findings
 
@@ -181,6 +185,19 @@ def humanoid(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         shutil.copy(nodl.parent / "package.xml", tmp_path / nodl.parent.name)
     monkeypatch.chdir(tmp_path)
     return tmp_path
+
+
+def test_a_node_that_was_built_with_another_definition(humanoid: Path, tmp_path: Path) -> None:
+    old = tmp_path / "old/sensor_msgs/msg/Imu.msg"
+    old.parent.mkdir(parents=True)
+    old.write_text("std_msgs/Header header\nfloat64 x\n")
+    registry = registry_of(["sensor_msgs/msg/Imu"], SearchPath(find_packages([tmp_path / "old"])))
+    (humanoid / "joint_controller/ifgen.lock").write_text(lock_text.text([registry]))
+    found = findings(built(humanoid, LAUNCH_OF_HUMANOID))
+    assert {each.rule for each in found} == {"system-hash"}
+    assert "of sensor_msgs/msg/Imu, which `/imu/data` is of" in found[0].message
+    (humanoid / "joint_controller/ifgen.lock").write_text("version 7\n")
+    assert {each.rule for each in findings(built(humanoid, LAUNCH_OF_HUMANOID))} == {"invalid-lock"}
 
 
 @pytest.mark.slow
