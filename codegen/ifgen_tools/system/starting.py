@@ -11,7 +11,7 @@ from ifgen.nodl.syntax.tree import ListNode, ScalarNode
 
 from ifgen_tools.system.build import full_name
 from ifgen_tools.system.model import Command, NodeInstance, Parameter, Remap
-from ifgen_tools.system.view import ALWAYS_THERE, SOURCES, View, at, finding, suggestion
+from ifgen_tools.system.view import ALWAYS_THERE, SOURCES, View, at, finding, nearest, suggestion
 
 _KIND = {"msg": "a topic", "srv": "a service", "action": "an action"}
 
@@ -32,14 +32,15 @@ def unused_remaps(view: View) -> Iterator[Diagnostic]:
             if remap.is_global:
                 told.add(remap)
             who = "no node has" if remap.is_global else f"{node.name} has"
-            names = {
-                name for e in node.endpoints if not e.is_of_framework for name in (e.written, e.expanded)
-            }
+            own = [end for end in node.endpoints if not end.is_of_framework]
+            names = {name for end in own for name in (end.written, end.expanded)}
+            near = nearest(remap.old, names)
+            meant = next((end for end in own if near in {end.written, end.expanded}), None)
             what = "a name" if remap.is_global else "no name"
             yield finding(
                 rule="system-unused-remap",
                 message=f"{who} {what} `{remap.old}`, which is renamed to `{remap.new}`",
-                labels=(at(remap.span), at(node.description.span if node.description else None, "its names")),
+                labels=(at(remap.span), at(meant.span if meant else None, "not this?")),
                 help=suggestion(remap.old, names) or _listed(names),
                 severity="warning" if remap.is_global else "error",
             )
