@@ -1,4 +1,4 @@
-"""What the commands about a whole system share: their options, and the way to the tools that answer them.
+"""The options that commands about a whole system share, and the way to the tools that answer them.
 
 The toolkit knows no launch files: `--system` of `ifgen check` and `ifgen breaking` calls the entry points in
 the group `ifgen.system`, which `ifgen_tools.system` has.

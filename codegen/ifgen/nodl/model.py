@@ -149,7 +149,7 @@ class Timer:
 
 @dataclass(frozen=True, slots=True)
 class Terms:
-    """What a node promises or needs beyond the type of an endpoint, from `codegen.ifgen.endpoints`.
+    """A promise or a need beyond the type of an endpoint, from `codegen.ifgen.endpoints`.
 
     `required`: somebody must be at the other side. `exclusive`: nobody else may publish. `rate` [Hz] is what
     a publisher sends at least, or what a subscription needs. `unit` and `frame` are those of the data.

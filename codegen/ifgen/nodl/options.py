@@ -92,7 +92,7 @@ class StructOptions(BaseModel):
 
 
 class EndpointOptions(BaseModel):
-    """What a node promises or needs beyond the type of an endpoint."""
+    """The terms of an endpoint: what a node promises or needs beyond its type."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 

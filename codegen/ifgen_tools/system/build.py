@@ -17,7 +17,7 @@ from ifgen.reading.search_path import SearchPath
 
 from ifgen_tools.launching.commands import activate
 from ifgen_tools.system.documents import Documents
-from ifgen_tools.system.model import Command, Endpoint, NodeInstance, Parameter, Remap, System
+from ifgen_tools.system.model import Command, Endpoint, NodeInstance, NodeKind, Parameter, Remap, System
 from ifgen_tools.system.parameters import ParameterFiles, given
 
 if TYPE_CHECKING:
@@ -25,12 +25,18 @@ if TYPE_CHECKING:
 
 # Late imports: `launch` is found once the transport has been chosen.
 
-_CONTAINERS = ("component_container", "component_container_mt", "component_container_isolated")
+_KINDS: Mapping[str, NodeKind] = {
+    "component_container": "container",
+    "component_container_isolated": "container",
+    "component_container_mt": "container",
+    "static_transform_publisher": "transforms",
+}
+"""Programs that need no document."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Request:
-    """What to build a system from.
+    """The files to build a system from.
 
     `arguments` are those of the launch files, `packages` the folders with documents (default: those in
     [tool.ifgen]), `parameter_files` what every node gets on top.
@@ -70,7 +76,9 @@ def build(request: Request) -> Built:
     hashes, registry = documents.hashes(types)
     managed = launched.managed
     system = System(
-        tuple(_finished(node, hashes, managed) for node in nodes), launched.commands, files.sections()
+        tuple(_finished(node, hashes, managed, documents) for node in nodes),
+        launched.commands,
+        files.sections(),
     )
     return Built(system, registry, (*dict.fromkeys(documents.findings), *files.findings))
 
@@ -152,16 +160,13 @@ def _instance(
     launched: LaunchedNode, documents: Documents, files: ParameterFiles, request: Request
 ) -> NodeInstance:
     description = documents.of(launched.package, launched.executable, launched.name)
-    kind = launched.kind
-    if launched.executable in _CONTAINERS:
-        kind = "container"
     own_name = launched.name or (description.name if description else _stem(launched.executable))
     name = f"{launched.namespace.rstrip('/')}/{own_name}"
     return NodeInstance(
         name=name,
         package=launched.package,
         executable=launched.executable,
-        kind=kind,
+        kind=_KINDS.get(launched.executable, launched.kind),
         description=description,
         endpoints=instantiate(description, name, launched.remaps, documents) if description else (),
         parameters=tuple(_parameters(launched, name, files, request.parameter_files)),
@@ -182,7 +187,7 @@ def _problem(launched: LaunchedNode, documents: Documents) -> Diagnostic | None:
         return None
     if not is_package and launched.executable in documents.names(launched.package):
         return None
-    rule = "system-unknown-package" if is_package else "system-unknown-executable"
+    rule = "system-no-package" if is_package else "system-no-executable"
     label = Label(launched.span) if launched.span else None
     return Diagnostic(rule, launched.missing.message, label, help=launched.missing.help or None)
 
@@ -205,8 +210,11 @@ def _parameters(
         yield from files.values(path, name)
 
 
-def _finished(node: NodeInstance, hashes: Mapping[str, str], managed: frozenset[str]) -> NodeInstance:
+def _finished(
+    node: NodeInstance, hashes: Mapping[str, str], managed: frozenset[str], documents: Documents
+) -> NodeInstance:
     """The node with the hashes of its types, and whether a transition manages it."""
-    endpoints = tuple(replace(each, type_hash=hashes.get(each.type_name, "")) for each in node.endpoints)
+    known = {**hashes, **(documents.locked(node.description) if node.description else {})}
+    endpoints = tuple(replace(each, type_hash=known.get(each.type_name, "")) for each in node.endpoints)
     is_managed = node.is_managed or node.name.rpartition("/")[2] in managed
     return replace(node, endpoints=endpoints, is_managed=is_managed)

@@ -73,7 +73,7 @@ def of_request(request: SystemRequest) -> Built:
 
 
 def findings(built: Built, *, complete: bool = False) -> list[Diagnostic]:
-    """What is wrong with the files of a system, and with what they are together."""
+    """The mistakes in the files of a system, and in what they are together."""
     return [*built.findings, *check_rules(built.system, complete=complete)]
 
 

@@ -5,15 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Final
 
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.type_description import TypeHashes
 from ifgen.diagnostics import Diagnostic, InputError
+from ifgen.evolution.lock import file as lock
 from ifgen.nodl import barriers
 from ifgen.nodl.load import Loaded, load_document, registry_of
 from ifgen.nodl.model import Interface, NodeDescription
 from ifgen.reading.packages import NodeFile
 from ifgen.reading.search_path import SearchPath
+
+LOCK: Final = "ifgen.lock"
 
 
 class Documents:
@@ -26,6 +30,7 @@ class Documents:
         self.search = search
         self.findings: list[Diagnostic] = []
         self._loaded: dict[Path, Loaded | None] = {}
+        self._locks: dict[Path, dict[str, str]] = {}
 
     def of(self, package: str, executable: str, name: str) -> NodeDescription | None:
         """The description of a node; None if no document is found."""
@@ -58,6 +63,19 @@ class Documents:
             return {}, Registry.of_interfaces(())
         hashes = TypeHashes(registry)
         return {each.type_name: hashes.of(each) for each in registry if each.type_name in names}, registry
+
+    def locked(self, description: NodeDescription) -> dict[str, str]:
+        """The hashes that the lock file of a node's package has: what the node was built against."""
+        path = description.path.parents[1] / LOCK if description.path else None
+        if path is None or not path.is_file():
+            return {}
+        if path not in self._locks:
+            try:
+                self._locks[path] = dict(lock.read(path).hashes)
+            except InputError as error:
+                self.findings += error.diagnostics
+                self._locks[path] = {}
+        return self._locks[path]
 
     def _file(self, package: str, names: Iterable[str]) -> NodeFile | None:
         if not package:

@@ -55,7 +55,6 @@ from ifgen_tools.system.places import Place, Places
 MAX_INCLUDES: Final = 40
 """Launch files within launch files; more of them are files that include each other."""
 _MAX_DEPTH: Final = 150
-_RULE: Final = "system-launch-file"
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +153,7 @@ class Evaluation:
     _depth: int = 0
 
     def evaluate(self, path: Path, arguments: Mapping[str, str]) -> Launched:
-        """What a launch file starts with these arguments. Raises InputError with all places."""
+        """Everything that a launch file starts with these arguments. Raises InputError with all places."""
         self.context = LaunchContext(
             argv=[f"{name}:={value}" for name, value in arguments.items()], noninteractive=True
         )
@@ -170,6 +169,9 @@ class Evaluation:
             self.visit([include])
             while self._calls:
                 self._calls.popleft().fire()
+        except SystemExit as error:
+            ended = RuntimeError(f"SystemExit: {error}").with_traceback(error.__traceback__)
+            raise InputError([self._explained(explained(ended))]) from error
         except Exception as error:
             raise InputError([self._explained(explained(error))]) from error
         finally:
@@ -198,7 +200,7 @@ class Evaluation:
             self._depth -= 1
 
     def _following(self, entity: LaunchDescriptionEntity) -> Sequence[LaunchDescriptionEntity] | None:
-        """What to evaluate after an entity."""
+        """The entities to evaluate after one."""
         if isinstance(entity, Action) and entity.condition and not entity.condition.evaluate(self.context):
             return None
         match entity:
@@ -369,7 +371,7 @@ class Evaluation:
         )
         around = tuple(Label(each, "included here") for each in dict.fromkeys(filter(None, spans)))[:4]
         primary, secondary = (Label(span), around) if span else (next(iter(around), None), around[1:])
-        return Diagnostic(_RULE, message, primary, secondary, error.help or None)
+        return Diagnostic("system-launch-file", message, primary, secondary, error.help or None)
 
     # What the context of a description asks its host for.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, Final, NoReturn, cast, get_args
 
@@ -22,7 +22,7 @@ _KEYS: Final = ("category", "name", "type", "hash", "qos", "version")
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """What a system offers and needs: its nodes, each with its endpoints but those that all nodes have.
+    """The offers and needs of a system: its nodes, with their endpoints but those that all nodes have.
 
     A node without a document is an open end, and has none. `source` is the file, if it was read from one.
     """
@@ -44,7 +44,9 @@ def of_system(system: System) -> Manifest:
             node.name,
             node.package,
             node.executable,
-            endpoints=tuple(sorted((e for e in node.endpoints if not e.is_of_framework), key=_order)),
+            endpoints=tuple(
+                _plain(end) for end in sorted(node.endpoints, key=_order) if not end.is_of_framework
+            ),
             span=node.span,
         )
         for node in system.nodes
@@ -94,6 +96,12 @@ def parse(source: Source) -> Manifest:
     nodes = cast("dict[str, Any]", top["nodes"])
     found = tuple(_node(source, name, value) for name, value in nodes.items())
     return Manifest(found, tuple(cast("list[str]", names)), source)
+
+
+def _plain(end: Endpoint) -> Endpoint:
+    """An endpoint as the others see it, whatever its node calls it."""
+    terms = Terms(version=end.terms.version, span=end.terms.span) if end.terms and end.terms.version else None
+    return replace(end, written=end.name, expanded=end.name, remap=None, terms=terms)
 
 
 def _order(endpoint: Endpoint) -> tuple[str, str, str]:

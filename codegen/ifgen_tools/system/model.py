@@ -14,8 +14,9 @@ from ifgen.diagnostics import Diagnostic, Span
 from ifgen.nodl.model import Category, NodeDescription, QosProfile, Terms
 from ifgen.nodl.syntax.tree import Node as Tree
 
-NodeKind: TypeAlias = Literal["process", "component", "container", "running"]
-"""A node with a process of its own, one that a container loads, a container, or one that was seen running."""
+NodeKind: TypeAlias = Literal["process", "component", "container", "transforms", "running"]
+"""A node with a process of its own, one in a container, a container, a publisher of static transforms, or one
+that was seen running. Containers and publishers of transforms need no document."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,7 +41,7 @@ class ParameterFiles:
     def values(
         self, path: Path, node: str, span: Span | None = None, text: str | None = None
     ) -> Iterator[Parameter]:
-        """What a file, named at a place of a launch file, sets for a node of this full name."""
+        """The values in a file, named at a place of a launch file, for a node of this full name."""
         for pattern, key, parameters in self._read(path, span, text).sections:
             self._receivers.setdefault((pattern, key.span), []).append(node)
             if matches(pattern, node):

@@ -39,6 +39,21 @@ RULES: Final[Sequence[Callable[[View], Iterable[Diagnostic]]]] = (
 )
 """Each looks at the whole system. Their names in findings are in docs/rules.md."""
 
+OF_RUNNING: Final[Sequence[Callable[[View], Iterable[Diagnostic]]]] = (
+    connections.qos,
+    connections.servers,
+    connections.near_names,
+    connections.namespaces,
+    connections.writers,
+)
+"""Those that a look at running nodes can tell. Doctor compares types and definitions itself."""
+
+
+def check_running(system: System) -> list[Diagnostic]:
+    """Everything that is wrong with the connections of nodes that run."""
+    view = View(system)
+    return list(dict.fromkeys(diagnostic for rule in OF_RUNNING for diagnostic in rule(view)))
+
 
 def check(system: System, *, complete: bool = False) -> list[Diagnostic]:
     """Everything that is wrong with a system, errors first.

@@ -11,10 +11,9 @@ from ifgen.nodl.syntax.tree import ListNode, ScalarNode
 
 from ifgen_tools.system.build import full_name
 from ifgen_tools.system.model import Command, NodeInstance, Parameter, Remap
-from ifgen_tools.system.view import ALWAYS_THERE, SOURCES, View, at, finding, suggestion
+from ifgen_tools.system.view import ALWAYS_THERE, SOURCES, View, at, finding, nearest, suggestion
 
 _KIND = {"msg": "a topic", "srv": "a service", "action": "an action"}
-_STATIC_TRANSFORMS = "static_transform_publisher"
 
 
 def unused_remaps(view: View) -> Iterator[Diagnostic]:
@@ -33,14 +32,15 @@ def unused_remaps(view: View) -> Iterator[Diagnostic]:
             if remap.is_global:
                 told.add(remap)
             who = "no node has" if remap.is_global else f"{node.name} has"
-            names = {
-                name for e in node.endpoints if not e.is_of_framework for name in (e.written, e.expanded)
-            }
+            own = [end for end in node.endpoints if not end.is_of_framework]
+            names = {name for end in own for name in (end.written, end.expanded)}
+            near = nearest(remap.old, names)
+            meant = next((end for end in own if near in {end.written, end.expanded}), None)
             what = "a name" if remap.is_global else "no name"
             yield finding(
                 rule="system-unused-remap",
                 message=f"{who} {what} `{remap.old}`, which is renamed to `{remap.new}`",
-                labels=(at(remap.span), at(node.description.span if node.description else None, "its names")),
+                labels=(at(remap.span), at(meant.span if meant else None, "not this?")),
                 help=suggestion(remap.old, names) or _listed(names),
                 severity="warning" if remap.is_global else "error",
             )
@@ -158,7 +158,7 @@ def sim_time(view: View) -> Iterator[Diagnostic]:
     senders = {end.node for end in clock.providers} if clock else set[str]()
     simulated = [(node, given) for node, _ in view.described if (given := _uses_sim_time(node)) is not None]
     on = [(node, given) for node, given in simulated if given.value and _truth(given)]
-    if on and not senders and not view.is_open and not view.system.commands:
+    if on and not senders and not view.is_open and not any(map(_may_simulate, view.system.commands)):
         node, given = on[0]
         yield finding(
             rule="system-sim-time",
@@ -254,6 +254,11 @@ def _managers(view: View) -> Iterator[tuple[NodeInstance, Parameter, list[str]]]
             yield node, given, [str(each.value) for each in items if isinstance(each, ScalarNode)]
 
 
+def _may_simulate(command: Command) -> bool:
+    """Whether a program that is no node may be a simulator: those of ROS are none."""
+    return bool(command.words) and command.words[0].rpartition("/")[2] not in {"ros2", "ifgen"}
+
+
 def _uses_sim_time(node: NodeInstance) -> Parameter | None:
     return node.value("use_sim_time")
 
@@ -267,7 +272,7 @@ def _transforms(view: View) -> Iterator[tuple[NodeInstance, str, str]]:
     for node in view.system.nodes:
         if node.description is not None:
             yield from ((node, child, parent) for child, parent in node.description.frames.broadcasts)
-        elif node.executable == _STATIC_TRANSFORMS:
+        elif node.kind == "transforms":
             named = dict(pairwise(node.arguments))
             if "--child-frame-id" in named and "--frame-id" in named:
                 yield node, named["--child-frame-id"], named["--frame-id"]

@@ -1,4 +1,4 @@
-"""What rules look at: a system by its names, and findings with a caret in every file that takes part."""
+"""A system as rules look at it, by its names, and findings with a caret in every file that takes part."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ifgen.nodl.model import Category, NodeDescription
 from ifgen_tools.system.model import Endpoint, NodeInstance, System
 
 SOURCES = (Category.PUBLISHER, Category.SERVICE_SERVER, Category.ACTION_SERVER)
-"""Who provides: the others need."""
+"""The sides that provide: the others need."""
 
 ALWAYS_THERE = ("/tf", "/tf_static", "/clock", "/rosout", "/parameter_events")
 """Topics that nodes use through their libraries, whatever their documents say."""
@@ -52,7 +52,7 @@ class View:
 
     @cached_property
     def meetings(self) -> tuple[Meeting, ...]:
-        """Who meets whom, by name."""
+        """The ends of each name, by name."""
 
         def place(endpoint: Endpoint) -> tuple[str, str]:
             return endpoint.name, endpoint.category.folder
