@@ -70,7 +70,7 @@ def described(manifest: Manifest) -> System:
 
 
 def running(transport: TransportChoice) -> System:
-    """The system that runs now, as the transport tells of it. Raises UsageError if there is no such transport."""
+    """The system that runs now. Raises UsageError if there is no such transport."""
     with session_beside([], transport) as session:
         return of_view(session.graph())
 
