@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -19,6 +20,7 @@ from ifgen.reading.packages import node_name
 from ifgen.reading.storage import read_source
 
 _PARAMETERS: Final = "ros__parameters"
+_MISSPELLED: Final = re.compile(r"_*ros_*param(eter)?s?_*", re.IGNORECASE)
 _EXTENSIONS: Final = (".yaml", ".yml")
 
 
@@ -83,6 +85,9 @@ def sections(node: Node | None, name: str, problems: FileProblems) -> Iterator[t
         if not isinstance(value, MapNode):
             problems.error(_no_map, key, value)
             continue
+        if key.name != _PARAMETERS and _MISSPELLED.fullmatch(key.name):
+            problems.error(_misspelled, key)
+            continue
         whole = f"{name}/{key.name.strip('/')}"
         parameters = value.get(_PARAMETERS)
         if isinstance(parameters, MapNode):
@@ -133,6 +138,16 @@ def _no_section(source: Source) -> Diagnostic:
         Label(Span(source, 0, 0)),
         help="write `my_node: {ros__parameters: {my_parameter: value}}`",
         severity="warning",
+    )
+
+
+def _misspelled(key: Key) -> Diagnostic:
+    """Say that parameters are below another word than ROS looks for."""
+    return Diagnostic(
+        "unknown-key",
+        f"ROS takes `{shorten(key.name)}` for the name of a node",
+        Label(key.span),
+        help=f"write `{_PARAMETERS}`, with two underscores",
     )
 
 
