@@ -310,8 +310,19 @@ def test_the_installed_document_keeps_includes_and_codegen(tmp_path: Path) -> No
     assert part["codegen"] == {"python": {"role": "NO_GENERATE"}}
     code = (tmp_path / "out/demo/demo/_talker_base.py").read_text()
     assert "class TalkerBase(LifecycleNode):" in code
+    assert (tmp_path / "out/demo/package.xml").read_text().count("<depend>rclpy</depend>") == 1
     assert "create_lifecycle_publisher" in code
     assert "tf" not in code
+
+
+def test_the_package_of_a_base_class_is_a_dependency(tmp_path: Path) -> None:
+    source = tmp_path / "in/demo/nodl"
+    source.mkdir(parents=True)
+    base = "codegen: {python: {role: BASE_CLASS, module: robot.base, class: RobotNode}}"
+    (source / "base.nodl.yaml").write_text(document(base))
+    (source / "talker.nodl.yaml").write_text(document("include: [{ref: 'local://base.nodl.yaml'}]"))
+    generate(tmp_path / "in", output=tmp_path / "out")
+    assert "<depend>robot</depend>" in (tmp_path / "out/demo/package.xml").read_text()
 
 
 class Shelf:

@@ -56,7 +56,7 @@ def policy() -> None:
     """
 
 
-@policy.command(epilog="Example: ifgen policy sros2 bringup.launch.py -o policy.xml")
+@policy.command(epilog="Example: ifgen policy sros2 bringup.launch.py rate:=5 -o policy.xml")
 @_options
 @_output
 def sros2(output: Path | None, **options: Any) -> int:
@@ -66,7 +66,7 @@ def sros2(output: Path | None, **options: Any) -> int:
     return _write(form.text(_grants(**options)), output)
 
 
-@policy.command(epilog="Example: ifgen policy router bringup.launch.py -o router.json5")
+@policy.command(epilog="Example: ifgen policy router bringup.launch.py rate:=5 -o router.json5")
 @_options
 @_output
 @_domain
@@ -89,7 +89,7 @@ def router(output: Path | None, domain: int | None, identity: Identity, **option
     return _write(_as_json(zenoh.router(_grants(**options), _domain_of(domain), identity)), output)
 
 
-@policy.command(epilog="Example: ifgen policy zenoh bringup.launch.py -o sessions")
+@policy.command(epilog="Example: ifgen policy zenoh bringup.launch.py rate:=5 -o sessions")
 @_options
 @click.option(
     "-o",
@@ -118,7 +118,7 @@ def zenoh(output: Path, domain: int | None, **options: Any) -> int:
     return 0
 
 
-@click.command(epilog="Example: ifgen admit arm/ifgen.system.lock --against robot/ifgen.system.lock")
+@click.command(epilog="Example: ifgen admit arm.lock --against robot.lock")
 @click.argument("manifest", type=EXISTING_FILE)
 @click.option(
     "--against",
@@ -167,7 +167,10 @@ def _grants(
         raise InputError(errors)
     for node in built.system.open_ends:
         click.echo(f"warning: {node.name} has no document, so it may do nothing", err=True)
-    return of_system(built.system, built.registry)
+    found = of_system(built.system, built.registry)
+    if not found:
+        click.echo("warning: no node of these launch files has a document: nobody may do anything", err=True)
+    return found
 
 
 def _domain_of(chosen: int | None) -> int:
