@@ -179,11 +179,15 @@ def _instance(
 
 
 def _problem(launched: LaunchedNode, documents: Documents) -> Diagnostic | None:
-    """The reason why a node cannot be started, where that is a mistake: no package of elsewhere."""
+    """The reason why a node cannot be started, where that is a mistake.
+
+    A package that is not here may be on the robot, unless its name is almost that of one that is.
+    """
     if launched.missing is None or launched.kind == "container":
         return None
     is_package = "has no executable" not in launched.missing.message
-    if is_package and documents.knows_package(launched.package):
+    is_near = "did you mean" in launched.missing.help
+    if is_package and (documents.knows_package(launched.package) or not is_near):
         return None
     if not is_package and launched.executable in documents.names(launched.package):
         return None

@@ -28,8 +28,10 @@ def check(
     """Look for what is wrong with a system before it starts, and print that; 1 if there is an error."""
     built = of_request(request)
     policy = settle(request.packages, None, request.include, strict=strict).policy
-    told = policy.told(findings(built, complete=request.complete))
-    code = terminal.print_findings(told, format_, "" if quiet else f"{in_words(built.system)}: no mistakes")
+    diagnostics = policy.told(findings(built, complete=request.complete))
+    code = terminal.print_findings(
+        diagnostics, format_, "" if quiet else f"{in_words(built.system)}: no mistakes"
+    )
     if request.lock and not code:
         _write(manifest.of_system(built.system))
     return code

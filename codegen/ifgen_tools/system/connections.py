@@ -34,15 +34,15 @@ _VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 def near_names(view: View) -> Iterator[Diagnostic]:
     """A topic with one side only, and one of the same type whose name is almost the same."""
-    told: set[str] = set()
+    reported: set[str] = set()
     for meeting in _lonely(view, "msg"):
         one = meeting.ends[0]
         others = _others_of(view, one)
-        if one.name in told or _is_namespace_error(view, one, others):
+        if one.name in reported or _is_namespace_error(view, one, others):
             continue
         near = nearest(one.name, (other.name for other in others))
         for other in (each for each in others if each.name == near):
-            told |= {one.name, other.name}
+            reported |= {one.name, other.name}
             yield finding(
                 rule="system-near-name",
                 message=f"{one.node} {_VERB[one.category]} `{one.name}`, and {other.node} "
@@ -56,14 +56,14 @@ def near_names(view: View) -> Iterator[Diagnostic]:
 
 def namespaces(view: View) -> Iterator[Diagnostic]:
     """A topic with one side only, whose other side is the same but for the namespace of a node."""
-    told: set[str] = set()
+    reported: set[str] = set()
     for folder in ("msg", "srv", "action"):
         for meeting in _lonely(view, folder):
             one = meeting.ends[0]
             for other in _others_of(view, one):
-                if one.name in told or not _differ_by_namespace(one, other):
+                if one.name in reported or not _differ_by_namespace(one, other):
                     continue
-                told |= {one.name, other.name}
+                reported |= {one.name, other.name}
                 inner = one if one.name.count("/") > other.name.count("/") else other
                 yield finding(
                     rule="system-namespace",
@@ -122,6 +122,8 @@ def required(view: View) -> Iterator[Diagnostic]:
             continue
         if endpoint.terms and endpoint.terms.required:
             candidates = {e.name for e in view.system.endpoints if e.type_name == endpoint.type_name}
+            if view.is_open and not view.complete and not nearest(endpoint.name, candidates):
+                continue
             yield finding(
                 rule="system-required",
                 message=f"{endpoint.node} requires `{endpoint.name}`, and nobody is at the other side",

@@ -77,8 +77,7 @@ def parse(source: Source) -> Manifest:
     except (ValueError, RecursionError) as error:
         at = getattr(error, "pos", 0)
         _fail(source, f"this is no JSON: {getattr(error, 'msg', 'too deep')}", at)
-    top = _map(source, content, "a manifest", ("version", "open_ends", "nodes"))
-    version = top["version"]
+    version = cast("dict[str, Any]", content).get("version") if isinstance(content, dict) else None
     if isinstance(version, int) and not isinstance(version, bool) and version > VERSION:
         _fail(
             source,
@@ -86,6 +85,7 @@ def parse(source: Source) -> Manifest:
             source.text.find('"version"'),
             "update ifgen",
         )
+    top = _map(source, content, "a manifest", ("version", "open_ends", "nodes"))
     if version != VERSION or isinstance(version, bool):
         _fail(source, f"the version must be {VERSION}", source.text.find('"version"'))
     names = top["open_ends"]

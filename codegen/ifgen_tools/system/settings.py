@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from ifgen.diagnostics import Diagnostic, Span, shorten
 from ifgen.nodl import names, validators, values
@@ -24,12 +24,7 @@ def unknown(view: View) -> Iterator[Diagnostic]:
         for given in _that_count(node):
             if given.name in known or names.reserved_parameter(given.name) or _is_for_all(given):
                 continue
-            yield finding(
-                rule="system-no-parameter",
-                message=f"{node.name} has no parameter `{shorten(given.name)}`",
-                labels=(at(given.span), at(description.span, "it declares others")),
-                help=suggestion(given.name, known),
-            )
+            yield _unknown(node, given.name, given.span, known)
 
 
 def wrong(view: View) -> Iterator[Diagnostic]:
@@ -105,12 +100,18 @@ def read_only(view: View) -> Iterator[Diagnostic]:
                 severity="warning",
             )
         elif declared is None and not names.reserved_parameter(change[1]):
-            yield finding(
-                rule="system-no-parameter",
-                message=f"{node.name} has no parameter `{shorten(change[1])}`",
-                labels=(at(command.span), at(node.description.span, "it declares others")),
-                help=suggestion(change[1], _declared(node.description)),
-            )
+            yield _unknown(node, change[1], command.span, _declared(node.description))
+
+
+def _unknown(node: NodeInstance, name: str, span: Span | None, known: Mapping[str, Declared]) -> Diagnostic:
+    near = nearest(name, known)
+    listed = f"it has {shorten(', '.join(known), 200)}" if known else "it has none"
+    return finding(
+        rule="system-no-parameter",
+        message=f"{node.name} has no parameter `{shorten(name)}`",
+        labels=(at(span), at(known[near].span, "not this?") if near else None),
+        help=suggestion(name, known) or listed,
+    )
 
 
 def _wrong_type(node: NodeInstance, given: Parameter, declared: Declared, value: BadValue) -> Diagnostic:

@@ -21,16 +21,16 @@ def unused_remaps(view: View) -> Iterator[Diagnostic]:
     used_globally: set[tuple[str, str]] = set()
     for node, _ in view.described:
         used_globally |= {(e.remap.old, e.remap.new) for e in node.endpoints if e.remap and e.remap.is_global}
-    told: set[Remap] = set()
+    reported: set[Remap] = set()
     for node, _ in view.described:
         used = [end.remap for end in node.endpoints if end.remap]
         for remap in node.remaps:
-            if remap in used or _may_be_inside(node, remap) or remap in told:
+            if remap in used or _may_be_inside(node, remap) or remap in reported:
                 continue
             if remap.is_global and ((remap.old, remap.new) in used_globally or view.is_open):
                 continue
             if remap.is_global:
-                told.add(remap)
+                reported.add(remap)
             who = "no node has" if remap.is_global else f"{node.name} has"
             own = [end for end in node.endpoints if not end.is_of_framework]
             names = {name for end in own for name in (end.written, end.expanded)}
@@ -233,7 +233,8 @@ def _may_be_inside(node: NodeInstance, remap: Remap) -> bool:
     old = full_name(remap.old.rpartition(":")[2], node.name)
     if f"/{old.rpartition('/')[2]}" in ALWAYS_THERE or old.endswith("/robot_description"):
         return True
-    return remap.old.startswith("__") or "/_action/" in old
+    is_of_other = ":" in remap.old and remap.old.partition(":")[0] != node.name.rpartition("/")[2]
+    return is_of_other or remap.old.startswith("__") or "/_action/" in old
 
 
 def _listed(names: Iterable[str]) -> str | None:

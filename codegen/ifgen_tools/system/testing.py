@@ -40,7 +40,7 @@ def assert_sound(
     )
     built = build(request)
     ignored = set(ignore)
-    told = settle(request.packages, None, ()).policy.told(findings(built, complete=complete))
-    told = tuple(each for each in told if each.severity == "error" or each.rule not in ignored)
-    assert not told, "\n" + report.as_plain_text(told, _WIDTH)
+    diagnostics = settle(request.packages, None, ()).policy.told(findings(built, complete=complete))
+    wrong = [each for each in diagnostics if each.severity == "error" or each.rule not in ignored]
+    assert not wrong, "\n" + report.as_plain_text(wrong, _WIDTH)
     return built.system

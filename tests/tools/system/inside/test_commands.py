@@ -84,6 +84,12 @@ def test_an_open_end_is_a_mistake_only_if_all_must_be_described(ifgen: Run) -> N
     assert "error[system-no-document]: nothing describes /crab/sonar: crab_base/sonar" in done.out
 
 
+def test_a_package_of_elsewhere_is_an_open_end(ifgen: Run) -> None:
+    edit(LAUNCH, 'pkg="crab_base" exec="sonar"', 'pkg="nav2_unknown" exec="sonar"')
+    edit("crab_base/nodl/wander.nodl.yaml", ", ranges: {required: true}", "")
+    assert ifgen(*WORDS).out == "7 nodes, 8 connections, 1 open end: no mistakes\n"
+
+
 def test_options_without_a_system_or_a_launch_file(ifgen: Run) -> None:
     assert "need --system" in ifgen("check", "crab_base", "--complete").err
     assert "needs a launch file" in ifgen("check", "--system", "crab_base").err
