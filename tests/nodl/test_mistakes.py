@@ -31,6 +31,7 @@ def options(text: str, rest: str = "") -> str:
     return f"nodl_version: 2\ncodegen:\n  ifgen:\n    {text}\n{rest}"
 
 
+CLIENT = "service_clients: [{name: a, type: std_srvs/Trigger}]\n"
 STRUCTS = [
     ("invalid-option", "structs: {g: {each: ⟦joints⟧, of: {p: {type: int}}}}", "string_array with a default"),
     ("missing-key", "structs: {g: ⟦{of: {p: {type: int}}}⟧}", "`each`"),
@@ -233,6 +234,11 @@ OPTIONS = [
     ("wrong-value", options("tests: ⟦contract⟧"), "must be a list"),
     ("unknown-value", options("tests: [contract, ⟦topic⟧]"), "did you mean `topics`"),
     ("invalid-option", options("node_class: ⟦gait-planner⟧"), "a name in Python"),
+    ("invalid-option", options("endpoints: {⟦scam⟧: {required: true}}"), "write its name as"),
+    ("invalid-option", options("endpoints: {a: {version: ⟦'2.x'⟧}}", CLIENT), "such as 2.1.0"),
+    ("invalid-option", options("endpoints: {a: {rate: ⟦0.0⟧}}", CLIENT), "above 0"),
+    ("unknown-key", options("endpoints: {a: {⟦require⟧: true}}", CLIENT), "did you mean `required`"),
+    ("wrong-value", options("frames: {uses: ⟦map⟧}"), "must be a list"),
     ("invalid-option", options("business_file: ⟦../a.py⟧"), "without a folder"),
     ("invalid-option", options("validators: {'a::b': ⟦check⟧}"), "dotted path"),
     ("wrong-value", options("validators: {'a::b': ⟦5⟧}"), "must be a text"),

@@ -260,6 +260,8 @@ def _terms(options: Options, tree: MapNode, problems: FileProblems) -> Iterator[
         node, key = find(tree, ("endpoints", name))
         if re.fullmatch(VERSION, each.version) is None:
             problems.error(_no_version, _place(tree, "endpoints", name, "version"), each.version)
+        if each.rate is not None and not 0 < each.rate < math.inf:
+            problems.error(_no_period, _place(tree, "endpoints", name, "rate"), "rate")
         span = key.span if key else node.span
         yield name, Terms(**each.model_dump(), span=span)
 
