@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, nullcontext
+from functools import partial
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
@@ -33,6 +34,17 @@ FOLDER = "ros_bags"
 
 RECORDING = pytest.StashKey["Recording"]()
 """Where a test keeps its recording for the hooks."""
+
+
+@pytest.fixture
+def check_system(request: pytest.FixtureRequest) -> Callable[..., Any]:
+    """Fails if the system of a launch file is not sound: `check_system("bringup.launch.py", complete=True)`.
+
+    It is `ifgen check --system` with a path relative to the test's file. It returns the system.
+    """
+    from ifgen.command_kit.system import extension
+
+    return partial(extension("test"), folder=request.path.parent)
 
 
 @pytest.fixture

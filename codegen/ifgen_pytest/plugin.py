@@ -15,6 +15,7 @@ from ifgen_pytest.fixtures import (
     FOLDER,
     RECORDING,
     bag,
+    check_system,
     ifgen_generator,
     record,
     replay,
@@ -30,6 +31,7 @@ from ifgen_pytest.strict import StrictCheck
 
 __all__ = [
     "bag",
+    "check_system",
     "ifgen_generator",
     "pytest_pycollect_makemodule",
     "record",

@@ -27,6 +27,13 @@ COMPUTED = {
     "duplicate-endpoint",
     "json-syntax",
     "yaml-syntax",
+    "system-frame",
+    "system-major",
+    "system-minor",
+    "system-no-executable",
+    "system-no-package",
+    "system-patch",
+    "system-unit",
 }
 """Names that the code puts together from parts."""
 IN_NEED = {"no-interfaces", "no-path", "no-program", "unknown-format", "unknown-rule"}

@@ -24,8 +24,8 @@ from humanoid.robot.body import OURS, STRAIGHT_HEIGHT
 from humanoid.robot.description import describe_robot
 from humanoid.robot.external import load_external
 from humanoid.robot.feet import measured_foot
-from humanoid.robot.joint_map import ModelError
 from humanoid.robot.model import HumanoidModel, Names, describe, load
+from humanoid.robot.table import ModelError
 from humanoid.simulation.sim import Noise
 from humanoid.trials.harness import Lockstep
 

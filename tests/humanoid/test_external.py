@@ -13,8 +13,8 @@ from humanoid.control.reference import straight_steps
 from humanoid.data import FootstepPlan
 from humanoid.robot import table
 from humanoid.robot.external import load_external
-from humanoid.robot.joint_map import ModelError
 from humanoid.robot.mjcf import write_mjcf
+from humanoid.robot.table import ModelError
 from humanoid.simulation.sim import Noise
 from humanoid.trials.harness import Lockstep
 from hypothesis import given, settings

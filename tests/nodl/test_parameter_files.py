@@ -31,6 +31,10 @@ GOOD = [
     section("names: [a], qos_overrides: {/a: {depth: 5}}", "/**"),
     "robot:\n  talker:\n    ros__parameters: {names: [a]}\n",
     section("names: [a]") + section("rate: 3.0", "/**"),
+    section("names: [a]", "/*"),
+    section("names: [a]", "'*'"),
+    section("names: [a]", "/robot/*"),
+    section("names: [a]", "/**/arm/talker"),
 ]
 BAD = [
     ("unknown-parameter", section("names: [a], ⟦rat⟧: 2.0"), "did you mean `rate`"),
@@ -49,6 +53,11 @@ BAD = [
     ("unknown-node", "⟦⟧# nothing\n", "sets no parameters"),
     ("wrong-value", "talker: ⟦5⟧\n", "ros__parameters"),
     ("wrong-value", "talker:\n  ros__parameters: ⟦[a]⟧\n", "ros__parameters"),
+    ("unknown-key", "talker:\n  ⟦ros_parameters⟧: {rate: 2.0}\n", "two underscores"),
+    ("unknown-key", "/**:\n  ⟦ros__parameter⟧: {rate: 2.0}\n", "two underscores"),
+    ("unknown-parameter", section("names: [a], ⟦rat⟧: 2.0", "/**"), "did you mean `rate`"),
+    ("wrong-value", section("names: [a], rate: ⟦10⟧", "/*/talker"), "decimal point"),
+    ("wrong-value", "robot:\n  arm:\n    talker:\n      ros__parameters: {rate: ⟦yes⟧}\n", "a number"),
     ("yaml-syntax", "talker: [⟦\n⟧", "not YAML"),
 ]
 

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import json
+from importlib.metadata import EntryPoint
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
 from ifgen import generate
+from ifgen.nodl import resolvers
+from ifgen.nodl.barriers import OFFICIAL
 from ifgen.nodl.load import Loaded
 from ifgen.nodl.names import expanded
 from ifgen.nodl.verdict import Verdict, verdict
 from ifgen.reading.search_path import SearchPath
+from ifgen_tools.nodl import rewriting
+
+from . import documents
 
 QOS = "qos: {history: KEEP_LAST, depth: 1, reliability: RELIABLE}"
 TOPIC = f"{{name: /a, type: std_msgs/msg/String, {QOS}}}"
@@ -38,6 +46,7 @@ ACCEPTED = [
     "codegen: {}",
     "codegen: {cpp: {}, rust: {anything: [1, {a: b}]}}",
     "codegen: {cpp: {role: base_class}}",
+    "codegen: {ifgen: {style: unheard, timers: 5, anything: [1]}}",
     "codegen: {cpp: {role: NODE, namespace: demo}}",
     "codegen: {python: {role: NO_GENERATE}}",
     "include: []",
@@ -103,84 +112,27 @@ ACCEPTED = [
 ]
 
 REFUSED = [
-    "base: x",
-    "fragments: []",
-    "name: talker",
-    "x-more: 1",
-    "description: 5",
-    "description:",
-    "codegen: text",
-    "codegen: {cpp: text}",
-    "codegen: {cpp: }",
-    "include: text",
-    "include: [text]",
-    "include: [{}]",
-    "include: [{ref: 'local://part.nodl.yaml', as: x}]",
-    *(
-        f"include: [{{ref: {ref!r}}}]"
-        for ref in (
-            *("", "/abs/path", "a/b.yaml", "./a", "nodl:///x", "nodl://", "://x", "nodl:/x", "has space://x"),
-            *(
-                "Nodl://a/b",
-                "local://a b",
-                "nodl://a",
-                "test://x",
-                "local://nobody.yaml",
-                "nodl://nobody/none",
-            ),
-        )
+    ("unknown-key", "include: [{ref: 'local://part.nodl.yaml', as: x}]"),
+    ("invalid-include", "include: [{ref: 'nodl:///x'}]"),
+    ("invalid-include", "include: [{ref: 'nodl://'}]"),
+    ("invalid-include", "include: [{ref: 'nodl:/x'}]"),
+    ("invalid-include", "include: [{ref: 'local://a b'}]"),
+    ("invalid-include", "include: [{ref: 'nodl://a'}]"),
+    ("unknown-include", "include: [{ref: 'test://x'}]"),
+    ("unknown-include", "include: [{ref: 'local://nobody.yaml'}]"),
+    ("unknown-include", "include: [{ref: 'nodl://nobody/none'}]"),
+    (
+        "duplicate-endpoint",
+        f"publishers: [{{name: /part, type: std_msgs/msg/String, {QOS}}}]\ninclude: [{{ref: 'local://part.nodl.yaml'}}]",
     ),
-    "parameters: []",
-    "parameters: {p: int}",
-    parameter("description: x"),
-    parameter("type: float"),
-    parameter("type: bool_array_fixed_3"),
-    parameter("type: string_fixed_0"),
-    parameter("type: string_fixed_04"),
-    parameter("type: int, read_only: 1"),
-    parameter("type: int, unit: m"),
-    parameter("type: byte_array, default_value: [-1]"),
-    parameter("type: byte_array, default_value: [256]"),
-    parameter("type: int", "a..b"),
-    parameter("type: int", "'.a'"),
-    "parameters: {a: {type: int}, a.b: {type: int}}",
-    *(checked("int", text) for text in ("bounds: [0]", "bounds: 5", "lt: x", "lt: [1, 2]", "maximum: 5")),
-    *(checked("int", text) for text in ("one_of: [1, 2]", "one_of: [[]]", "::b: 5", "a::b: {x: 1}")),
-    checked("double", "gt: 1e3"),
-    *(checked("string", text) for text in ("size_gt: -1", "size_gt: 1.5", "not_empty: 5")),
-    *(topic(name) for name in ("", "1a", "a/", "/", "~", "a-b", "a b", "/a/{x}")),
-    *(
-        topic(type_=name)
-        for name in ("String", "std_msgs//String", "std_msgs/msg/string", "std_msgs/idl/String")
-    ),
-    *(topic(type_=name) for name in ("std_msgs/msg/A_B", "std_msgs/msg/String/x", "1a/msg/A")),
-    "publishers: {a: b}",
-    f"publishers: [{{name: a, type: std_msgs/msg/String, {QOS}, unit: m}}]",
-    "publishers: [{name: a, type: std_msgs/msg/String}]",
-    f"publishers: [{{type: std_msgs/msg/String, {QOS}}}]",
-    f"publishers: [{{name: a, {QOS}}}]",
-    f"publishers: [{TOPIC}, {TOPIC}]",
-    qos("history: KEEP_LAST, reliability: RELIABLE"),
-    qos("history: KEEP_LAST, depth: 0, reliability: RELIABLE"),
-    qos("history: BEST_AVAILABLE, reliability: RELIABLE"),
-    qos("history: keep_all, reliability: RELIABLE"),
-    qos("reliability: RELIABLE"),
-    qos("history: KEEP_ALL"),
-    qos("history: KEEP_ALL, reliability: UNKNOWN"),
-    qos("history: KEEP_ALL, reliability: RELIABLE, deadline_ns: -1"),
-    qos("history: KEEP_ALL, reliability: RELIABLE, deadline_ns: 1.5"),
-    qos("history: KEEP_ALL, reliability: RELIABLE, deadline: 1"),
-    "service_servers: [{name: a}]",
-    f"action_servers: [{{name: a, type: example_interfaces/action/Fibonacci, {QOS}}}]",
-    # The part declares /part as a publisher, and the parameter `shared`.
-    f"publishers: [{{name: /part, type: std_msgs/msg/String, {QOS}}}]\ninclude: [{{ref: 'local://part.nodl.yaml'}}]",
-    "parameters: {shared: {type: int}}\ninclude: [{ref: 'local://part.nodl.yaml'}]",
-    "include: [{ref: 'local://part.nodl.yaml'}, {ref: 'local://part.nodl.yaml'}]",
-    "include: [{ref: 'local://talker.nodl.yaml'}]",
-    "include: [{ref: 'local://loop.nodl.yaml'}]",
-    "include: [{ref: 'local://one.nodl.yaml'}, {ref: 'local://two.nodl.yaml'}]",
-    "include: [{ref: 'nodl://rclpy/node'}, {ref: 'nodl://rclcpp/node'}]",
+    ("duplicate-parameter", "parameters: {shared: {type: int}}\ninclude: [{ref: 'local://part.nodl.yaml'}]"),
+    ("included-twice", "include: [{ref: 'local://part.nodl.yaml'}, {ref: 'local://part.nodl.yaml'}]"),
+    ("included-twice", "include: [{ref: 'local://talker.nodl.yaml'}]"),
+    ("included-twice", "include: [{ref: 'local://loop.nodl.yaml'}]"),
+    ("included-twice", "include: [{ref: 'local://one.nodl.yaml'}, {ref: 'local://two.nodl.yaml'}]"),
+    ("included-twice", "include: [{ref: 'nodl://rclpy/node'}, {ref: 'nodl://rclcpp/node'}]"),
 ]
+"""The rule of the first error, and the document, for documents with includes."""
 
 OTHERS = {
     "part": f"parameters: {{shared: {{type: int}}}}\npublishers: [{{name: /part, type: std_msgs/String, {QOS}}}]",
@@ -203,7 +155,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def judge(folder: Path, text: str, *, follow: bool = True) -> Verdict:
     path = folder / "talker.nodl.yaml"
-    path.write_text(text)
+    path.write_text(text, newline="")
     return verdict(path, SEARCH, follow=follow)
 
 
@@ -211,32 +163,45 @@ def document(text: str) -> str:
     return f"nodl_version: 2\n{text}\n"
 
 
-@pytest.mark.parametrize("text", ACCEPTED)
+def plainly_merged(path: Path) -> dict[str, Any]:
+    """What PyYAML reads in a document and its includes, the root first, then breadth first."""
+    merged: dict[str, Any] = {}
+    queue = [path]
+    while queue:
+        current = queue.pop(0)
+        read = yaml.safe_load(current.read_text())
+        for key, value in read.items():
+            if key == "parameters":
+                merged.setdefault(key, {}).update(value)
+            elif isinstance(value, list) and key != "include":
+                merged[key] = merged.get(key, []) + value
+            elif current == path and key in {"nodl_version", "description"}:
+                merged[key] = value
+        for reference in (each["ref"] for each in read.get("include", ())):
+            scheme, _, rest = reference.partition("://")
+            official = tuple(rest.split("/", 1))
+            queue.append(OFFICIAL[official] if scheme == "nodl" else current.parent / rest)
+    return {key: value for key, value in merged.items() if value}
+
+
+@pytest.mark.parametrize("text", [*map(document, ACCEPTED), *documents.ACCEPTED])
 def test_accepted(folder: Path, text: str) -> None:
-    found = judge(folder, document(text))
+    """Its merged content is what PyYAML reads."""
+    found = judge(folder, text)
     assert [each.message for each in found.errors] == []
     assert found.loaded is not None
-
-
-@pytest.mark.parametrize("text", REFUSED)
-def test_refused(folder: Path, text: str) -> None:
-    assert judge(folder, document(text)).errors
+    expected = plainly_merged(folder / "talker.nodl.yaml")
+    read = yaml.safe_load(rewriting.merged(found.loaded))
+    # NaN equals nothing, and a date is written as a text.
+    assert str(read) == str(expected) or read == json.loads(json.dumps(expected, default=str))
 
 
 @pytest.mark.parametrize(
-    "text",
-    [
-        "",
-        "nodl_version: 1\n",
-        "nodl_version: '2'\n",
-        "description: a\n",
-        "[]\n",
-        "text\n",
-        "nodl_version: [\n",
-    ],
+    ("rule", "text"),
+    [*((rule, document(text)) for rule, text in REFUSED), *documents.REFUSED, *documents.STRICTER],
 )
-def test_no_document(folder: Path, text: str) -> None:
-    assert judge(folder, text).errors
+def test_refused(folder: Path, rule: str, text: str) -> None:
+    assert rule in {each.rule for each in judge(folder, text).errors}
 
 
 def test_without_following(folder: Path) -> None:
@@ -319,7 +284,9 @@ def test_a_base_of_cpp_is_the_same_base_of_python(folder: Path) -> None:
 
 
 def test_there_are_enough_documents() -> None:
-    assert len(ACCEPTED) + len(REFUSED) >= 120
+    accepted, refused = len(ACCEPTED) + len(documents.ACCEPTED), len(REFUSED) + len(documents.REFUSED)
+    assert accepted >= 150
+    assert refused >= 150
 
 
 def test_the_installed_document_keeps_includes_and_codegen(tmp_path: Path) -> None:
@@ -343,5 +310,55 @@ def test_the_installed_document_keeps_includes_and_codegen(tmp_path: Path) -> No
     assert part["codegen"] == {"python": {"role": "NO_GENERATE"}}
     code = (tmp_path / "out/demo/demo/_talker_base.py").read_text()
     assert "class TalkerBase(LifecycleNode):" in code
+    assert (tmp_path / "out/demo/package.xml").read_text().count("<depend>rclpy</depend>") == 1
     assert "create_lifecycle_publisher" in code
     assert "tf" not in code
+
+
+def test_the_package_of_a_base_class_is_a_dependency(tmp_path: Path) -> None:
+    source = tmp_path / "in/demo/nodl"
+    source.mkdir(parents=True)
+    base = "codegen: {python: {role: BASE_CLASS, module: robot.base, class: RobotNode}}"
+    (source / "base.nodl.yaml").write_text(document(base))
+    (source / "talker.nodl.yaml").write_text(document("include: [{ref: 'local://base.nodl.yaml'}]"))
+    generate(tmp_path / "in", output=tmp_path / "out")
+    assert "<depend>robot</depend>" in (tmp_path / "out/demo/package.xml").read_text()
+
+
+class Shelf:
+    """A resolver of `shelf://NAME`, and of a `local://` that it shadows."""
+
+    def handles(self, ref: str) -> bool:
+        return ref.startswith(("shelf://", "local://shadowed"))
+
+    def resolve(self, ref: str, origin: Path) -> Path:
+        name = ref.partition("://")[2]
+        if name == "fails":
+            raise KeyError(name)
+        return origin.parent / ("part.nodl.yaml" if name != "gone" else "gone.nodl.yaml")
+
+
+def test_resolvers(folder: Path) -> None:
+    """The newest comes first, before those of ifgen, as in nodl_schema."""
+    with resolvers.resolver_registered(Shelf()):
+        for reference in ("shelf://part", "local://shadowed"):
+            loaded = merged(folder, f"include: [{{ref: '{reference}'}}]")
+            assert [endpoint.name for endpoint in loaded.whole.endpoints] == ["/part"]
+        for reference, said in (("shelf://fails", "KeyError: 'fails'"), ("shelf://gone", "there is no file")):
+            [error] = judge(folder, document(f"include: [{{ref: '{reference}'}}]")).errors
+            assert said in error.message
+            assert error.rule == "unknown-include"
+    assert judge(folder, document("include: [{ref: 'shelf://part'}]")).errors
+
+
+def test_an_installed_resolver(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = EntryPoint("shelf", f"{__name__}:Shelf", resolvers.GROUP)
+    monkeypatch.setattr(resolvers, "_installed", lambda: (found.load()(),))
+    assert merged(folder, "include: [{ref: 'shelf://part'}]").whole.endpoints
+
+
+def test_what_is_no_resolver() -> None:
+    with pytest.raises(TypeError, match="`handles` and `resolve`"):
+        resolvers.register_resolver(5)  # type: ignore[arg-type]
+    with pytest.raises(LookupError):
+        resolvers.unregister_resolver(Shelf())

@@ -45,6 +45,7 @@ OLD_NODL = """<interface version="1">
 </interface>
 """
 NODL = "nodl_version: 2\n"
+MANIFEST = '{"version": 1, "open_ends": [], "nodes": {}}\n'
 FIRST = ["ifgen init", "ifgen generate"]
 """They make what others need."""
 LISTENS = 2.0
@@ -87,7 +88,8 @@ def project(folder: Path) -> None:
     for name, text in {"bringup.launch.py": BRINGUP, **dict.fromkeys(programs, TALKER)}.items():
         (folder / name).write_text(text.replace("talker", name.partition(".")[0]))
     (folder / "nodl").mkdir()
-    others = {"testee.py": TESTEE, "robot.nodl.xml": OLD_NODL}
+    manifests = dict.fromkeys(("arm.lock", "robot.lock"), MANIFEST)
+    others = {"testee.py": TESTEE, "robot.nodl.xml": OLD_NODL, **manifests}
     for name, text in {
         **others,
         "nodl/talker.nodl.yaml": NODL,

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import click
 
 from ifgen.command_kit import terminal
-from ifgen.command_kit.options import EXISTING, format_option, include_option, quiet_option, strict_option
+from ifgen.command_kit.options import format_option, include_option, quiet_option, strict_option
+from ifgen.command_kit.system import PATH_OR_ARGUMENT, extension, request, system_options
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, shown_path
 from ifgen.signals import sigterm_raises
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
 
 @click.command(epilog="Example: ifgen check interfaces --strict")
-@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
+@click.argument("words", metavar="[PATH]...", nargs=-1, type=PATH_OR_ARGUMENT)
+@system_options
 @include_option
 @format_option
 @strict_option
@@ -31,7 +33,12 @@ if TYPE_CHECKING:
 @click.option("--fix", is_flag=True, help="Fix what follows from a finding alone, then check again.")
 @click.option("--diff", is_flag=True, help="Show what --fix would change, and write nothing.")
 def check(
-    paths: tuple[Path, ...],
+    words: tuple[Path | str, ...],
+    system: bool,
+    parameter_files: tuple[Path, ...],
+    complete: bool,
+    no_python: bool,
+    lock: bool,
     include: tuple[Path, ...],
     format_: str,
     strict: bool | None,
@@ -47,10 +54,26 @@ def check(
     PATH is a package, a folder of packages, or one .msg, .srv, .action, .idl or .nodl.yaml file. The default
     is the paths in [tool.ifgen] of pyproject.toml. A parameter file (.yaml) is compared with what the nodes
     of the other paths, or of the default, declare.
+
+    With --system, PATH has launch files, too, and NAME:=VALUE for them: it says who does not meet whom, and
+    which parameters are wrong, before anything starts.
     """
+    if system:
+        asked = request(
+            words,
+            include=include,
+            parameter_files=parameter_files,
+            complete=complete,
+            with_python=not no_python,
+            lock=lock,
+        )
+        code: int = extension("check")(asked, format_, strict=strict, quiet=quiet)
+        return code
+    if complete or no_python or lock or any(isinstance(word, str) for word in words):
+        raise click.UsageError("arguments and these options need --system", click.get_current_context())
     from ifgen.pipeline.inspection import inspect, split_parameter_files
 
-    paths, parameter_files = split_parameter_files(paths)
+    paths, more = split_parameter_files([word for word in words if isinstance(word, Path)])
     settings = settle(paths, None, include, strict=strict).with_paths()
     while True:
         findings = inspect(
@@ -59,7 +82,7 @@ def check(
             output=settings.output,
             ros_distro=settings.custom.ros_distro,
             exclude=settings.exclude,
-            parameter_files=parameter_files,
+            parameter_files=(*parameter_files, *more),
         )
         told = settings.policy.told(findings.diagnostics)
         if diff or not fix or not _fix(told):

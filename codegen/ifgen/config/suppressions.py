@@ -172,7 +172,8 @@ class _Comments:
             if not mention.used:
                 from ifgen.config import rulebook  # which is read where somebody may have named a wrong rule
 
-                if rulebook.is_of_changes(mention.rule):  # only a comparison can tell
+                # Only a comparison, or a look at the whole system, can tell.
+                if rulebook.is_of_changes(mention.rule) or mention.rule.startswith("system-"):
                     continue
                 advice = "delete it, or move it to the line of the warning or above that"
                 nothing = f"there is no warning `{mention.rule}` here", advice

@@ -13,7 +13,7 @@ from typing import Any, Final
 from ifgen.definition.explain import did_you_mean
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
-from ifgen.nodl import barriers, names
+from ifgen.nodl import barriers, names, resolvers
 from ifgen.nodl.document import Document, Include
 from ifgen.nodl.model import BaseClass, Category, Endpoint, Interface, NodeDescription, Parameter
 from ifgen.reading import storage
@@ -101,6 +101,8 @@ def _found(
     reference = include.reference
     if not _is_reference(reference):
         report(_invalid(include))
+    elif (own := resolvers.registered_for(reference)) is not None:
+        return _resolved(own, include, document, report)
     elif reference.startswith(_LOCAL):
         path = _local(include, document)
         try:
@@ -120,8 +122,43 @@ def _found(
         else:
             report(_no_node(include, package, name, search))
     else:
-        report(_unknown_scheme(include))
+        return _of_another_scheme(include, document, report)
     return None
+
+
+def _of_another_scheme(
+    include: Include, document: Document, report: Callable[[Diagnostic], None]
+) -> NodeFile | None:
+    try:
+        resolver = resolvers.installed_for(include.reference)
+    except Exception as error:
+        report(_unresolved(include, error))
+        return None
+    if resolver is None:
+        report(_unknown_scheme(include))
+        return None
+    return _resolved(resolver, include, document, report)
+
+
+def _resolved(
+    resolver: resolvers.Resolver, include: Include, document: Document, report: Callable[[Diagnostic], None]
+) -> NodeFile | None:
+    """The file that somebody else's resolver finds."""
+    try:
+        path = Path(resolver.resolve(include.reference, document.source.path))
+    except Exception as error:
+        report(_unresolved(include, error))
+        return None
+    if storage.is_file(path):
+        return NodeFile(path)
+    report(_no_file(include, path))
+    return None
+
+
+def _unresolved(include: Include, error: Exception) -> Diagnostic:
+    what = " ".join(f"{type(error).__name__}: {error}".split())
+    message = f"`{shorten(include.reference)}` cannot be followed: {shorten(what, 200)}"
+    return Diagnostic("unknown-include", message, Label(include.span))
 
 
 def _invalid(include: Include) -> Diagnostic:
@@ -139,7 +176,8 @@ def _unknown_scheme(include: Include) -> Diagnostic:
         "unknown-include",
         f"references of the scheme `{shorten(scheme)}` cannot be followed",
         Label(include.span),
-        help=did_you_mean(f"{scheme}://", (_LOCAL, _NODL)) or "write `local://` or `nodl://`",
+        help=did_you_mean(f"{scheme}://", (_LOCAL, _NODL))
+        or f"write `local://` or `nodl://`, or install a package with a resolver ({resolvers.GROUP})",
     )
 
 

@@ -75,8 +75,10 @@ def _endpoint(node: Node, category: Category, search: SearchPath, problems: File
         return None
     span = _span(fields, "name")
     if problem := names.endpoint_name_problem(name):
-        problems.error(invalid_name, name, span, problem)
-        return None
+        if not names.nodl_allows_endpoint(name):
+            problems.error(invalid_name, name, span, problem)
+            return None
+        problems.error(invalid_name, name, span, problem, rule="unusable-name")
     return Endpoint(category, name, type_name, description, qos, span) if type_name else None
 
 
@@ -108,13 +110,13 @@ def _type_name(
         problems.error(_invalid_type, text, span, category, search)
         return None
     package_name, folder, name = parts
-    if folder not in {None, category.folder}:
-        problems.error(_wrong_folder, text, span, category)
-        return None
     package = search.package(package_name)
     if "_" in name and (package is None or package.interface(category.folder, name) is None):
         # Only .idl files define such names; NoDL has none.
         problems.error(_invalid_type, text, span, category, search)
+        return None
+    if folder not in {None, category.folder}:
+        problems.error(_wrong_folder, text, span, category)
         return None
     if package is None or not package.known_files():
         problems.error(_unknown_package, package_name, span, search)
@@ -128,10 +130,10 @@ def _span(fields: MapNode, key: str) -> Span:
     return fields.span if node is None else node.span
 
 
-def invalid_name(name: str, span: Span, problem: names.BadName) -> Diagnostic:
+def invalid_name(name: str, span: Span, problem: names.BadName, rule: str = "invalid-name") -> Diagnostic:
     """Say why an endpoint or a parameter cannot have its name."""
     message = f"`{shorten(name)}` is not a valid name: {problem.message}"
-    return Diagnostic("invalid-name", message, Label(_part(span, name, problem)), help=problem.advice)
+    return Diagnostic(rule, message, Label(_part(span, name, problem)), help=problem.advice)
 
 
 def _part(span: Span, name: str, problem: names.BadName) -> Span:

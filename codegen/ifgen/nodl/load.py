@@ -47,7 +47,7 @@ class Loaded:
 
     description: NodeDescription
     whole: Interface
-    sources: tuple[Source, ...]
+    documents: tuple[Document, ...]
     written: Written
     exists: bool
 
@@ -92,7 +92,7 @@ class _Loader:
         nodes = [self._node(package.name, *read[path]) for path in roots]
         sources = {path: found.source for path, (_, found) in read.items()}
         for loaded in nodes:
-            sources.update((composition.real(each.path), each) for each in loaded.sources)
+            sources.update((composition.real(each.source.path), each.source) for each in loaded.documents)
             self._report(rules.check_node(loaded.description, loaded.written))
         ordered = sorted(nodes, key=lambda loaded: loaded.description.name)
         descriptions = [loaded.description for loaded in ordered if not loaded.exists]
@@ -140,7 +140,7 @@ class _Loader:
         return Loaded(
             description,
             whole,
-            tuple(each.source for each in documents),
+            tuple(documents),
             written(documents, complete=not missed),
             exists=root.barrier is not None,
         )

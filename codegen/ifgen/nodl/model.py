@@ -148,6 +148,34 @@ class Timer:
 
 
 @dataclass(frozen=True, slots=True)
+class Terms:
+    """A promise or a need beyond the type of an endpoint, from `codegen.ifgen.endpoints`.
+
+    `required`: somebody must be at the other side. `exclusive`: nobody else may publish. `rate` [Hz] is what
+    a publisher sends at least, or what a subscription needs. `unit` and `frame` are those of the data.
+    `version` is that of the interface: `2.1.0` where it is provided, where it is used the range that is
+    accepted, such as `2.1..3`: from 2.1 to any 3.
+    """
+
+    required: bool = False
+    exclusive: bool = False
+    rate: float | None = None
+    unit: str = ""
+    frame: str = ""
+    version: str = ""
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Frames:
+    """The coordinate frames that a node broadcasts, as (child, parent), and those that it asks for."""
+
+    broadcasts: tuple[tuple[str, str], ...] = ()
+    uses: tuple[str, ...] = ()
+    span: Span | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
 class BaseClass:
     """A class that a node derives from, and its method that makes publishers."""
 
@@ -192,7 +220,7 @@ class NodeDescription:
     `base` is the class to derive from where an included document names one. `inherited` is what is behind
     such documents, `reserved` what the node declares although rclpy makes it: nothing is generated for
     either. `references` are the `nodl://` names of those documents, `codegen` is what the document says to
-    other tools, as (tool, JSON).
+    other tools, as (tool, JSON). `terms` are by the names of endpoints, as written.
     """
 
     package: str
@@ -216,6 +244,8 @@ class NodeDescription:
     reserved: Interface = Interface()
     references: tuple[str, ...] = ()
     codegen: tuple[tuple[str, str], ...] = ()
+    terms: tuple[tuple[str, Terms], ...] = ()
+    frames: Frames = Frames()
     path: Path | None = field(default=None, compare=False, repr=False)
     span: Span | None = field(default=None, compare=False, repr=False)
 

@@ -13,6 +13,8 @@ _IDENTIFIER: Final = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 ENDPOINT: Final = r"^(~?/[A-Za-z_]|[A-Za-z])[A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*$"
 """Whole names of topics, services and actions, as `endpoint_name_problem` has them."""
 
+_ENDPOINT_OF_NODL: Final = re.compile(r"[A-Za-z]|[/~A-Za-z][A-Za-z0-9_/]*[A-Za-z0-9_]")
+
 _OF_CLASSES: Final = frozenset(name for name in dir(type) if not name.startswith("__"))
 """Attributes of every class, which a dataclass would take for the default values of its fields."""
 
@@ -78,6 +80,16 @@ def endpoint_name_problem(name: str) -> BadName | None:
             "a name must not start with `_`", 0, 1, "ROS hides such names; NoDL describes the others"
         )
     return None
+
+
+def nodl_allows_endpoint(name: str) -> bool:
+    """Whether NoDL's schema allows a name that rclpy may still refuse, such as `a//b`."""
+    return _ENDPOINT_OF_NODL.fullmatch(name) is not None
+
+
+def nodl_allows_parameter(name: str) -> bool:
+    """Whether NoDL allows a name of a parameter that Python may not: only empty parts are refused."""
+    return all(name.split("."))
 
 
 def _name_advice(character: str) -> str:

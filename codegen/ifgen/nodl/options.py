@@ -14,7 +14,17 @@ from pydantic.config import JsonDict
 
 from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, Label, Span, shorten
-from ifgen.nodl.model import ClockName, MismatchPolicy, NodeDescription, Parameter, Style, Timer, Validator
+from ifgen.nodl.model import (
+    ClockName,
+    Frames,
+    MismatchPolicy,
+    NodeDescription,
+    Parameter,
+    Style,
+    Terms,
+    Timer,
+    Validator,
+)
 from ifgen.nodl.syntax.tree import (
     Key,
     ListNode,
@@ -49,6 +59,8 @@ _MODULE: Final[JsonDict] = {
     "patternErrorMessage": "This must be the file of a Python module, without a folder.",
 }
 _POSITIVE: Final[JsonDict] = {"exclusiveMinimum": 0}
+VERSION: Final = r"^([0-9]+(\.[0-9]+){0,2}(\.\.[0-9]+)?)?$"
+"""Versions of interfaces, and ranges of them."""
 _PERIODS: Final = ("period", "rate", "period_param")
 _ONE_PERIOD: Final[JsonDict] = {
     "oneOf": [{"required": [key], "properties": {key: {"not": {"type": "null"}}}} for key in _PERIODS]
@@ -79,6 +91,34 @@ class StructOptions(BaseModel):
     of: dict[str, dict[str, Any]] = Field(description="The parameters of each, as under `parameters`.")
 
 
+class EndpointOptions(BaseModel):
+    """The terms of an endpoint: what a node promises or needs beyond its type."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    required: bool = Field(default=False, description="Somebody must be at the other side.")
+    exclusive: bool = Field(default=False, description="Nobody else may publish.")
+    rate: float | None = Field(
+        default=None, description="Messages per second: sent, or needed.", json_schema_extra=_POSITIVE
+    )
+    unit: str = Field(default="", description="The unit of the data, such as rad.")
+    frame: str = Field(default="", description="The coordinate frame of the data.")
+    version: str = Field(
+        default="",
+        description="Of what is provided, 2.1.0; of what is needed, 2.1 or a range 2.1..3.",
+        json_schema_extra={"pattern": VERSION},
+    )
+
+
+class FrameOptions(BaseModel):
+    """Coordinate frames: child to parent of those that the node broadcasts, and those that it asks for."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    broadcasts: dict[str, str] = Field(default={}, description="The parent of each frame that it broadcasts.")
+    uses: list[str] = Field(default=[], description="Frames that it asks for.")
+
+
 class Options(BaseModel):
     """The keys below `codegen.ifgen`."""
 
@@ -103,12 +143,29 @@ class Options(BaseModel):
     validators: dict[str, str] = Field(
         default={}, description="For each custom validator (ns::name) the dotted path of a Python function."
     )
+    endpoints: dict[str, EndpointOptions] = Field(
+        default={}, description="Terms of endpoints, by their names as written."
+    )
+    frames: FrameOptions = Field(default=FrameOptions(), description="Coordinate frames of the node.")
     tests: list[TestGroup] | None = Field(
         default=None, description="Groups of tests to generate; all by default."
     )
 
 
+_INNER: Final = {
+    "endpoints": "the terms of an endpoint",
+    "frames": "the frames of a node",
+    "structs": "a map of structs",
+    "timers": "a timer",
+}
+_MODELS: Final[dict[str, type[BaseModel]]] = {
+    "a map of structs": StructOptions,
+    "a timer": TimerOptions,
+    "the frames of a node": FrameOptions,
+    "the terms of an endpoint": EndpointOptions,
+}
 _EXPECTED: Final = {
+    "bool_type": "true or false",
     "string_type": "a text",
     "float_type": "a number",
     "list_type": "a list",
@@ -148,6 +205,10 @@ def applied(node: NodeDescription, tree: MapNode, problems: FileProblems) -> Nod
         on_type_mismatch=options.on_type_mismatch,
         parameters=tuple(_with_functions(parameter, options.validators) for parameter in node.parameters),
         timers=tuple(_timers(options, tree, wrong, problems)),
+        terms=tuple(_terms(options, tree, problems)),
+        frames=Frames(
+            tuple(options.frames.broadcasts.items()), tuple(options.frames.uses), _place(tree, "frames")
+        ),
         tests=None
         if options.tests is None
         else tuple(dict.fromkeys(_GROUPS.get(group, group) for group in options.tests)),
@@ -191,6 +252,18 @@ def _with_functions(parameter: Parameter, functions: dict[str, str]) -> Paramete
         )
 
     return replace(parameter, validators=tuple(map(bound, parameter.validators)))
+
+
+def _terms(options: Options, tree: MapNode, problems: FileProblems) -> Iterator[tuple[str, Terms]]:
+    """The terms of endpoints. A version that is none is reported."""
+    for name, each in options.endpoints.items():
+        node, key = find(tree, ("endpoints", name))
+        if re.fullmatch(VERSION, each.version) is None:
+            problems.error(_no_version, _place(tree, "endpoints", name, "version"), each.version)
+        if each.rate is not None and not 0 < each.rate < math.inf:
+            problems.error(_no_period, _place(tree, "endpoints", name, "rate"), "rate")
+        span = key.span if key else node.span
+        yield name, Terms(**each.model_dump(), span=span)
 
 
 def _timers(options: Options, tree: MapNode, wrong: Set[Location], problems: FileProblems) -> Iterator[Timer]:
@@ -251,14 +324,12 @@ def _diagnostic(root: Node, error: dict[str, Any]) -> Diagnostic:
     location: Location = error["loc"]
     node, key = find(root, location)
     shown_location = [str(step) for step in location if isinstance(step, str)]
-    inner = {"timers": "a timer", "structs": "a map of structs"} if len(location) > 1 else {}
+    inner = _INNER if len(location) > 1 else {}
     what = inner.get(str(next(iter(location), "")), "codegen.ifgen")
     name = f"`{'.'.join(['codegen.ifgen', *shown_location])}`"
     match error["type"]:
         case "extra_forbidden" if key is not None:
-            models: dict[str, type[BaseModel]] = {"a timer": TimerOptions, "a map of structs": StructOptions}
-            model = models.get(what, Options)
-            return unknown_key(key, what, model.model_fields)
+            return unknown_key(key, what, _MODELS.get(what, Options).model_fields)
         case "missing":
             return missing_key(str(location[len(location) - 1]), what, node.span)
         case "literal_error":
@@ -306,6 +377,11 @@ def _no_one_period(span: Span, name: str, said: list[str]) -> Diagnostic:
         Label(span),
         help="give one of `period` [s], `rate` [Hz] and `period_param` (a double parameter [s])",
     )
+
+
+def _no_version(span: Span, text: str) -> Diagnostic:
+    message = f"`{shorten(text)}` is neither a version nor a range of versions"
+    return Diagnostic("invalid-option", message, Label(span), help="such as 2.1.0, or 2.1..3")
 
 
 def _no_period(span: Span, key: str) -> Diagnostic:

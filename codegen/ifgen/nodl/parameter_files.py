@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -19,6 +20,7 @@ from ifgen.reading.packages import node_name
 from ifgen.reading.storage import read_source
 
 _PARAMETERS: Final = "ros__parameters"
+_MISSPELLED: Final = re.compile(r"_*ros_*param(eter)?s?_*", re.IGNORECASE)
 _EXTENSIONS: Final = (".yaml", ".yml")
 
 
@@ -50,15 +52,15 @@ def check(files: Iterable[Path], nodes: Sequence[NodeDescription]) -> list[Diagn
 def _check_file(
     root: Node | None, source: Source, nodes: Sequence[NodeDescription], problems: FileProblems
 ) -> None:
-    sections = list(_sections(root, "", problems))
-    if not sections and not problems:
+    parts = list(sections(root, "", problems))
+    if not parts and not problems:
         problems.warning(_no_section, source)
     given: dict[str, set[str]] = {}
-    for name, key, parameters in sections:
+    for name, key, parameters in parts:
         addressed = [node for node in nodes if _is_for(name, node)]
         if not addressed:
             problems.warning(_unknown_node, key, name, nodes)
-        for word, place, value in _flat(parameters, ""):
+        for word, place, value in flat_entries(parameters, ""):
             declarations = [
                 (node, parameter)
                 for node in addressed
@@ -70,18 +72,21 @@ def _check_file(
             if addressed and not declarations and not names.reserved_parameter(word):
                 problems.error(_unknown_parameter, place, word, addressed)
             for _, parameter in declarations[:1] if len(addressed) == 1 else declarations:
-                _check_value(parameter, value, problems)
+                check_value(parameter, value, problems)
     for node in nodes:
         for parameter in node.parameters:
             if node.name in given and parameter.is_required and parameter.name not in given[node.name]:
                 problems.warning(_missing, source, node, parameter)
 
 
-def _sections(node: Node | None, name: str, problems: FileProblems) -> Iterator[tuple[str, Key, MapNode]]:
+def sections(node: Node | None, name: str, problems: FileProblems) -> Iterator[tuple[str, Key, MapNode]]:
     """The parts of a file: the name or pattern of nodes, its last word, and the parameters."""
     for key, value in node.entries if isinstance(node, MapNode) else ():
         if not isinstance(value, MapNode):
             problems.error(_no_map, key, value)
+            continue
+        if key.name != _PARAMETERS and _MISSPELLED.fullmatch(key.name):
+            problems.error(_misspelled, key)
             continue
         whole = f"{name}/{key.name.strip('/')}"
         parameters = value.get(_PARAMETERS)
@@ -90,7 +95,7 @@ def _sections(node: Node | None, name: str, problems: FileProblems) -> Iterator[
         elif parameters is not None:
             problems.error(_no_map, key, parameters)
         others = tuple((k, v) for k, v in value.entries if k.name != _PARAMETERS)
-        yield from _sections(MapNode(others, value.span), whole, problems)
+        yield from sections(MapNode(others, value.span), whole, problems)
 
 
 def _is_for(name: str, node: NodeDescription) -> bool:
@@ -99,17 +104,18 @@ def _is_for(name: str, node: NodeDescription) -> bool:
     return last == "**" or fnmatchcase(node.name, last)
 
 
-def _flat(node: MapNode, group: str) -> Iterator[tuple[str, Key, Node]]:
+def flat_entries(node: MapNode, group: str) -> Iterator[tuple[str, Key, Node]]:
     """The parameters with their whole names, the keys where they stand, and their values."""
     for key, value in node.entries:
         name = f"{group}{key.name}"
         if isinstance(value, MapNode):
-            yield from _flat(value, f"{name}.")
+            yield from flat_entries(value, f"{name}.")
         else:
             yield name, key, value
 
 
-def _check_value(parameter: Parameter, node: Node, problems: FileProblems) -> None:
+def check_value(parameter: Parameter, node: Node, problems: FileProblems) -> None:
+    """Report a value that a parameter cannot have."""
     if parameter.type.base == "none":
         return
     value = values.file_value(node, parameter.type)
@@ -132,6 +138,16 @@ def _no_section(source: Source) -> Diagnostic:
         Label(Span(source, 0, 0)),
         help="write `my_node: {ros__parameters: {my_parameter: value}}`",
         severity="warning",
+    )
+
+
+def _misspelled(key: Key) -> Diagnostic:
+    """Say that parameters are below another word than ROS looks for."""
+    return Diagnostic(
+        "unknown-key",
+        f"ROS takes `{shorten(key.name)}` for the name of a node",
+        Label(key.span),
+        help=f"write `{_PARAMETERS}`, with two underscores",
     )
 
 

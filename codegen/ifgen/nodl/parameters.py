@@ -94,7 +94,10 @@ def _no_names(name: str, span: Span) -> Diagnostic:
 def _parameter(key: Key, node: Node, problems: FileProblems) -> Parameter | None:
     problem = names.parameter_name_problem(key.name)
     if problem:
-        problems.error(invalid_name, key.name, key.span, problem)
+        if names.nodl_allows_parameter(key.name):
+            problems.error(invalid_name, key.name, key.span, problem, rule="unusable-name")
+        else:
+            problems.error(invalid_name, key.name, key.span, problem)
     if inner := _first_inside(node):
         problems.error(_nested_group, key, inner)
         return None
@@ -128,6 +131,8 @@ def _type(fields: MapNode, problems: FileProblems) -> ParameterType | None:
     type_ = values.parameter_type(text)
     if type_ is None:
         problems.error(_unknown_type, text, node.span)
+    elif (type_.fixed_size or 0) > values.MAX_FIXED_SIZE:
+        problems.error(_too_long, text, node.span)
     return type_
 
 
@@ -171,6 +176,12 @@ def _unknown_type(text: str, span: Span) -> Diagnostic:
         )
     message = f"`{shorten(text)}` is not a type of parameters"
     return Diagnostic("invalid-parameter-type", message, Label(span), help=hint)
+
+
+def _too_long(text: str, span: Span) -> Diagnostic:
+    """Say that no value is as long as a type allows."""
+    message = f"`{text}` must be of {values.MAX_FIXED_SIZE} or less"
+    return Diagnostic("too-large-number", message, Label(span))
 
 
 def _nested_group(group: Key, inner: Key) -> Diagnostic:

@@ -23,6 +23,8 @@ def check_node(node: NodeDescription, written: Written) -> Iterator[Diagnostic]:
     yield from _groups(node)
     yield from _functions(node, written)
     yield from _timers(node, written)
+    if written.publishers is not None:  # every document could be read
+        yield from _terms(node)
 
 
 def check_package(nodes: Sequence[NodeDescription]) -> Iterator[Diagnostic]:
@@ -113,6 +115,19 @@ def _timers(node: NodeDescription, written: Written) -> Iterator[Diagnostic]:
     yield from _late_timers(node)
 
 
+def _terms(node: NodeDescription) -> Iterator[Diagnostic]:
+    """Terms of endpoints that the node does not have."""
+    known = {endpoint.name for endpoint in node.whole.endpoints}
+    for name, terms in node.terms:
+        if name not in known:
+            yield Diagnostic(
+                "invalid-option",
+                f"the terms are of an endpoint `{shorten(name)}` that the node lacks",
+                _label(terms.span),
+                help=did_you_mean(name, known) or "write its name as the endpoint has it",
+            )
+
+
 def _late_timers(node: NodeDescription) -> Iterator[Diagnostic]:
     """Timers that publish less often than their publishers promise."""
     defaults = {parameter.name: parameter.default for parameter in node.parameters}
@@ -172,7 +187,7 @@ def _two_types(name: str, endpoint: Endpoint, first: Endpoint) -> Diagnostic:
 def _same_when_expanded(name: str, endpoint: Endpoint, first: Endpoint) -> Diagnostic:
     """Say that two names are one once they are expanded."""
     return Diagnostic(
-        "duplicate-endpoint",
+        "same-endpoint",
         f"there are two {endpoint.category.singular}s named `{name}`",
         _label(endpoint.span, f"this is `{name}`"),
         _labels(first.span, "and so is this"),

@@ -109,7 +109,10 @@ def read(node: MapNode, type_: ParameterType, problems: FileProblems) -> tuple[V
     found: dict[str, tuple[Validator, Key]] = {}
     for key, argument in node.entries:
         name = key.name.removesuffix("<>")
-        if name in found:
+        wrong = _wrong_form(argument, RULES[name].arguments) if name in RULES else None
+        if wrong is not None:
+            problems.error(_invalid_arguments, name, wrong)
+        elif name in found:
             problems.error(_duplicate_validator, key, found[name][1])
         elif name in RULES:
             validator = _built_in(key, name, argument, type_, problems)
@@ -118,7 +121,9 @@ def read(node: MapNode, type_: ParameterType, problems: FileProblems) -> tuple[V
         elif re.fullmatch(CUSTOM, key.name):
             arguments = _free_arguments(argument)
             if isinstance(arguments, BadValue):
-                problems.error(_invalid_arguments, key.name, arguments)
+                # NoDL takes lists with anything in them.
+                is_list = isinstance(argument, ListNode)
+                problems.error(_unfit_argument if is_list else _invalid_arguments, key.name, arguments)
             else:
                 found[name] = (Validator(name, arguments, span=key.span), key)
         else:
@@ -169,7 +174,7 @@ def _built_in(
     base = "int" if rule.arguments == "size" else type_.base
     arguments = _arguments(argument, rule.arguments, base)
     if isinstance(arguments, BadValue):
-        problems.error(_invalid_arguments, name, arguments)
+        problems.error(_unfit_argument, name, arguments)
         return None
     for item in _written_otherwise(argument):
         problems.warning(_text_for_others, name, item)
@@ -179,28 +184,47 @@ def _built_in(
     return Validator(name, arguments, span=key.span)
 
 
-def _arguments(node: Node, shape: Arguments, base: str) -> tuple[ScalarValue, ...] | BadValue:
+def _wrong_form(node: Node, shape: Arguments) -> BadValue | None:
+    """The part of an argument that NoDL refuses whatever type the parameter has."""
     items = node.items if isinstance(node, ListNode) else None
     match shape:
         case "none":
             is_nothing = isinstance(node, ScalarNode) and node.value is None
-            return () if is_nothing or items == () else BadValue(node, "nothing, or an empty list")
+            return None if is_nothing or items == () else BadValue(node, "nothing, or an empty list")
         case "pair":
             if items is None or len(items) != 2:
                 return BadValue(node, "[lower, upper], both inclusive")
-            return _scalars(items, base)
         case "choices":
             inner = items[0] if items and len(items) == 1 else None
-            if not isinstance(inner, ListNode) or not inner.items:
-                return BadValue(node, "a list inside a list, [[a, b]]")
-            return _scalars(inner.items, base)
+            is_list = isinstance(inner, ListNode) and inner.items
+            return None if is_list else BadValue(node, "a list inside a list, [[a, b]]")
         case "one" | "size":
             if items is not None and len(items) != 1:
                 return BadValue(node, "one number, x or [x]")
-            arguments = _scalars(items or (node,), base)
-            if shape == "size" and not isinstance(arguments, BadValue) and _number(arguments[0]) < 0:
-                return BadValue(node, "a size, 0 or more")
-            return arguments
+    for item in items or (node,):
+        number = _any_number(item)
+        if number is None or (shape == "size" and number % 1 != 0):
+            return BadValue(item, "an integer" if shape == "size" else "a number")
+        if shape == "size" and number < 0:
+            return BadValue(node, "a size, 0 or more")
+    return None
+
+
+def _any_number(node: Node) -> float | None:
+    read = values.read(node)
+    value = read.value if isinstance(read, ScalarNode) else None
+    return value if isinstance(value, int | float) and not isinstance(value, bool) else None
+
+
+def _arguments(node: Node, shape: Arguments, base: str) -> tuple[ScalarValue, ...] | BadValue:
+    """The arguments of a validator, in the right form, for a parameter or its elements of the type `base`."""
+    items = node.items if isinstance(node, ListNode) else (node,)
+    if shape == "none":
+        return ()
+    if shape == "choices":
+        assert isinstance(items[0], ListNode)
+        items = items[0].items
+    return _scalars(items, base)
 
 
 def _scalars(nodes: Sequence[Node], base: str) -> tuple[ScalarValue, ...] | BadValue:
@@ -262,7 +286,7 @@ def _unknown_validator(key: Key, known: Iterable[str]) -> Diagnostic:
 def _duplicate_validator(key: Key, first: Key) -> Diagnostic:
     """Say that a validator is there twice."""
     return Diagnostic(
-        "duplicate-key",
+        "duplicate-validator",
         f"the validator `{key.name.removesuffix('<>')}` is there twice, with and without `<>`",
         Label(key.span, "again"),
         (Label(first.span, "first here"),),
@@ -292,6 +316,16 @@ def _invalid_arguments(name: str, problem: BadValue) -> Diagnostic:
     """Say that a validator takes other arguments."""
     return Diagnostic(
         "invalid-arguments",
+        f"`{name}` takes {problem.expected}",
+        Label(problem.node.span, f"this is {shown(problem.node)}"),
+        help=yaml_surprise(problem.node, problem.expected),
+    )
+
+
+def _unfit_argument(name: str, problem: BadValue) -> Diagnostic:
+    """Say that a validator takes arguments of the parameter's type."""
+    return Diagnostic(
+        "unfit-argument",
         f"`{name}` takes {problem.expected}",
         Label(problem.node.span, f"this is {shown(problem.node)}"),
         help=yaml_surprise(problem.node, problem.expected),

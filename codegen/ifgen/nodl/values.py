@@ -16,7 +16,7 @@ FIXED: Final = ("string_fixed", "int_array_fixed", "double_array_fixed", "string
 INT64: Final = (-(2**63), 2**63 - 1)
 MAX_FIXED_SIZE: Final = 2**31 - 1
 
-FIXED_SIZE: Final = r"(string|(?:int|double|string)_array)_fixed_([1-9][0-9]{0,9})"
+FIXED_SIZE: Final = r"(string|(?:int|double|string)_array)_fixed_([1-9][0-9]{0,18})"
 """Types with at most the given number of characters or elements."""
 _NOUNS: Final = {
     "bool": "true or false",
@@ -42,7 +42,7 @@ def parameter_type(text: str) -> ParameterType | None:
     if text in ARRAYS:
         return ParameterType(cast("_Base", text.removesuffix("_array")), array=True)
     match = re.fullmatch(FIXED_SIZE, text)
-    if match is None or int(match[2]) > MAX_FIXED_SIZE:
+    if match is None:
         return None
     return ParameterType(
         cast("_Base", match[1].removesuffix("_array")), match[1].endswith("_array"), int(match[2])
@@ -122,6 +122,9 @@ def _of_base(node: Node, base: str) -> ScalarValue | BadValue:
             return found
         case "byte", int() if not isinstance(found, bool) and 0 <= found <= 255:
             return found
+        # JSON Schema takes 5.0 for an integer.
+        case "byte", float() if 0 <= found <= 255 and found.is_integer():
+            return int(found)
         case _:
             return BadValue(node, _NOUNS[base])
 

@@ -9,6 +9,8 @@ import click
 from click.core import ParameterSource
 from ifgen.command_kit import terminal
 from ifgen.command_kit.options import format_option, include_option
+from ifgen.command_kit.system import extension
+from ifgen.config.settings import settle
 
 if TYPE_CHECKING:
     from ifgen_tools.verbs import TransportChoice
@@ -74,6 +76,7 @@ def _graph_doctor(
     words = [running.split(shlex.split(program))[0] for program in programs]
     with session_beside(words, transport) as session:
         seen = findings.look(session)
-    found = list(findings.findings(seen, include))
+        graph = session.graph()
+    found = [*findings.findings(seen, include), *settle().policy.told(extension("running")(graph))]
     nodes = terminal.counted(len(seen.nodes), "node")
     return terminal.print_findings(found, format_, f"{nodes}: all definitions agree")

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
-from ifgen.command_kit.options import EXISTING, OUTPUT_FILE, include_option
+from ifgen.command_kit.options import OUTPUT_FILE, include_option
+from ifgen.command_kit.system import PATH_OR_ARGUMENT, extension, request, system_options
 from ifgen.diagnostics import Diagnostic, UsageError
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ _SUFFIXES: dict[str, Format] = {
     context_settings={"help_option_names": ["-h", "--help"]},
     epilog="Example: ifgen graph --run talker.py -o graph.svg",
 )
-@click.argument("paths", metavar="[PATH]...", nargs=-1, type=EXISTING)
+@click.argument("words", metavar="[PATH]...", nargs=-1, type=PATH_OR_ARGUMENT)
 @click.option(
     "--format",
     "format_",
@@ -40,6 +41,7 @@ _SUFFIXES: dict[str, Format] = {
     help="Default: by FILE, else mermaid.",
 )
 @click.option("-o", "--output", metavar="FILE", type=OUTPUT_FILE, help="Write into this file.")
+@system_options
 @include_option
 @click.option("--running", is_flag=True, help="Draw a running system instead.")
 @click.option(
@@ -57,9 +59,14 @@ _SUFFIXES: dict[str, Format] = {
     help="Draw this program while it runs: 'talker.py', '-m package.node'; may be repeated.",
 )
 def graph(
-    paths: tuple[Path, ...],
+    words: tuple[Path | str, ...],
     format_: Format | None,
     output: Path | None,
+    system: bool,
+    parameter_files: tuple[Path, ...],
+    complete: bool,
+    no_python: bool,
+    lock: bool,
     include: tuple[Path, ...],
     running: bool,
     transport: TransportChoice,
@@ -69,13 +76,28 @@ def graph(
 
     PATH is a package with node descriptions, a folder of packages, or one .nodl.yaml file. The default is
     the paths in [tool.ifgen]. Endpoints that can never match are joined in red. A connection without a node
-    at one end is dashed.
+    at one end is dashed. With --system, PATH has launch files, too, and it draws what they start.
     """
     chosen = format_ or _format_of(output)
     running = running or bool(programs)
-    if paths and running:
+    if words and running:
         raise click.UsageError("--running and --run take no PATH", click.get_current_context())
-    found = _running(programs, transport) if running else _described(paths, include)
+    paths = [word for word in words if isinstance(word, Path)]
+    if not system and (complete or no_python or lock or parameter_files or len(paths) < len(words)):
+        raise click.UsageError("arguments and these options need --system", click.get_current_context())
+    if system:
+        asked = request(
+            words,
+            include=include,
+            parameter_files=parameter_files,
+            complete=complete,
+            transport=transport,
+            with_python=not no_python,
+            lock=lock,
+        )
+        found: Graph = extension("graph")(asked)
+    else:
+        found = _running(programs, transport) if running else _described(paths, include)
     if not found.nodes:
         what, advice = (
             "there is no description of a node",

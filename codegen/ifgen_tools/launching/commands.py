@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 from ifgen.command_kit.options import transport_option
+from ifgen.command_kit.system import SystemRequest, extension
 from ifgen.command_kit.tool import ToolError, did_you_mean
 
 from ifgen_tools import completion
@@ -42,6 +43,7 @@ _ASSIGNMENT = re.compile(r"(\w+)=(.*)", re.DOTALL)
     "-s", "--show-args", "--show-arguments", is_flag=True, help="Print the arguments, and run nothing."
 )
 @click.option("-p", "--print", "--print-description", "prints", is_flag=True, help="Print what it contains.")
+@click.option("--check", is_flag=True, help="Look for mistakes in what it would start, and run nothing.")
 @click.option(
     "-a", "--show-all-subprocesses-output", "show_all", is_flag=True, help="All output on the screen."
 )
@@ -65,6 +67,7 @@ def launch(
     transport: Literal["local", "rclpy", "auto"],
     show_args: bool,
     prints: bool,
+    check: bool,
     show_all: bool,
     noninteractive: bool,
     launch_prefix: str,
@@ -91,6 +94,11 @@ def launch(
             transport = _TRANSPORTS.get(word, transport)
     chosen = _put_on_path(transport, output)
     path = _path(paths, output)
+    if check:
+        arguments = tuple((name, value) for name, _, value in (word.partition(":=") for word in given))
+        asked = SystemRequest(launch_files=(Path(path),), arguments=arguments, transport=transport)
+        code: int = extension("check")(asked)
+        return code
     from ifgen_tools.launching import installed
 
     if (theirs := installed.folder()) is not None:
@@ -110,18 +118,18 @@ def launch(
     context.launch_configurations |= {name: value for name, value in configurations.items() if value}
     if show_all:
         os.environ["OVERRIDE_LAUNCH_PROCESS_OUTPUT"] = "both"
-    arguments = [word.split(":=", 1) for word in given]
-    include = IncludeLaunchDescription(path, launch_arguments=[(name, value) for name, value in arguments])
+    assigned = [word.split(":=", 1) for word in given]
+    include = IncludeLaunchDescription(path, launch_arguments=[(name, value) for name, value in assigned])
     include.place = None
     try:
         description = include.launch_description_source.get_launch_description(context)
         if show_args or prints:
-            print("\n".join(_described(service, description, path, arguments, show_args=show_args)))
+            print("\n".join(_described(service, description, path, assigned, show_args=show_args)))
             return 0
     except Exception as error:
         reason = error if isinstance(error, LaunchError) else explained(error)
         raise ToolError(reason.message, reason.help) from error
-    for name, _ in arguments:
+    for name, _ in assigned:
         if remark := _unknown(name, description, path, service):
             print(f"warning: {remark}", file=sys.stderr, flush=True)
     elsewhere.tell(chosen)

@@ -46,13 +46,17 @@ class Difference:
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """An endpoint with its full name; `type_hash` is None where nobody says it."""
+    """An endpoint with its full name; `type_hash` is None where nobody says it.
+
+    `parts` are the hashes of the messages and services that a service or an action consists of, by type.
+    """
 
     category: Category
     name: str
     type_name: str
     qos: QosProfile | None = None
     type_hash: str | None = None
+    parts: Mapping[str, str] = field(default_factory=dict)
     span: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -131,7 +135,8 @@ def side_of_document(
             new_names.get(name, name),
             endpoint.type_name,
             endpoint.qos,
-            hashes.get(endpoint.type_name),
+            hashes.get(endpoint.type_name) if endpoint.category.folder == "msg" else None,
+            {} if endpoint.category.folder == "msg" else hashes,
             endpoint.span,
         )
         ends.append(end)
@@ -140,11 +145,24 @@ def side_of_document(
 
 
 def side_of_node(
-    node: str, endpoints: Iterable[ros_graph.Endpoint], parameters: Sequence[RunningParameter] | None
+    node: str,
+    endpoints: Iterable[ros_graph.Endpoint],
+    parameters: Sequence[RunningParameter] | None,
+    parts: Mapping[tuple[Category, str], Mapping[str, str]] = MappingProxyType({}),
 ) -> Side:
-    """The side of a running node; its parameters are None if its services do not answer."""
+    """The side of a running node; its parameters are None if its services do not answer.
+
+    `parts` are the hashes that the parts of services and actions have, by category and name.
+    """
     ends = (
-        End(each.category, each.name, each.type_name, each.qos, each.type_hash)
+        End(
+            each.category,
+            each.name,
+            each.type_name,
+            each.qos,
+            each.type_hash,
+            parts.get((each.category, each.name), {}),
+        )
         for each in endpoints
         if each.node == node
     )
@@ -243,6 +261,10 @@ def _of_one(said: End, seen: End, choices: Choices) -> Iterator[Difference]:
     elif said.type_hash and seen.type_hash and said.type_hash != seen.type_hash:
         detail = f"{said.type_name} is {said.type_hash} here, but the node has {seen.type_hash}"
         yield Difference("hash_mismatch", section, name, detail, span)
+    for type_name, type_hash in seen.parts.items():
+        if type_hash and said.parts.get(type_name, type_hash) != type_hash:
+            detail = f"{type_name} is {said.parts[type_name]} here, but the node has {type_hash}"
+            yield Difference("hash_mismatch", section, name, detail, span)
     if said.qos is None:
         return
     place = said.qos.span or span

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -9,24 +10,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from ifgen.command_kit.tool import ToolError
-from ifgen.definition.type_description import TypeHashes
+from ifgen.definition.type_description import TypeHashes, described_types
 from ifgen.diagnostics import Diagnostic, InputError, UsageError
 from ifgen.nodl import barriers
 from ifgen.nodl.load import Loaded, load_document, registry_of
-from ifgen.nodl.model import Interface
+from ifgen.nodl.model import Category, Interface
 from ifgen.nodl.verdict import verdict
 from ifgen.reading.search_path import SearchPath
 
+from ifgen_tools import discovery, ros_graph
 from ifgen_tools.nodl.conformance import Choices, Report, Side, compare, side_of_document, side_of_node
 from ifgen_tools.nodl.parameters import parameters_of
 
 if TYPE_CHECKING:
+    from rclpy.node import Node
+
     from ifgen_tools.session import Session, Transport
 
 # Late imports: `launch` is found once the transport has been chosen.
 
 
 _STRICT: Final = Choices()
+_LATE: Final = 5.0  # [s]
+_TURN: Final = 0.2  # [s]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,17 +58,16 @@ class Contract:
         return side_of_document(self.interface, node, remaps=remaps, hashes=self._hashes())
 
     def _hashes(self) -> dict[str, str]:
-        """The hashes of the messages that can be found."""
+        """The hashes of the interfaces that can be found, and of what they consist of."""
         found: dict[str, str] = {}
-        for type_name in {end.type_name for end in self.interface.endpoints if "/msg/" in end.type_name}:
+        for type_name in {end.type_name for end in self.interface.endpoints}:
             try:
                 registry = registry_of([type_name], self.search)
             except InputError:
                 continue
             hashes = TypeHashes(registry)
-            found.update(
-                (each.type_name, hashes.of(each)) for each in registry if each.type_name == type_name
-            )
+            own = (each for each in registry if each.type_name == type_name)
+            found.update((part.type_name, hashes.of(part)) for each in own for part in described_types(each))
         return found
 
 
@@ -82,9 +87,48 @@ def check(
     choices: Choices = _STRICT,
     remaps: Sequence[tuple[str, str]] = (),
 ) -> Report:
-    """The differences between a running node and its document."""
-    seen = side_of_node(node, session.graph().endpoints, parameters_of(session, node))
-    return compare(contract.side(node, remaps), seen, choices)
+    """The differences between a running node and its document.
+
+    On a busy machine DDS tells of endpoints late, so what seems to be missing there is looked for again.
+    """
+    expected = contract.side(node, remaps)
+    end = time.monotonic() + (_LATE if session.transport == "rclpy" else 0.0)
+    while True:
+        report = compare(expected, seen(session, node), choices)
+        is_whole = all(each.kind != "missing" for each in report.differences)
+        if is_whole or time.monotonic() > end:
+            return report
+        session.wait_for(lambda: False, _TURN)
+
+
+def seen(session: Session, node: str) -> Side:
+    """The side of a running node."""
+    domain = session.context.get_domain_id() if session.transport == "local" else None
+    parts = service_definitions(session.node, node, domain)
+    return side_of_node(node, session.graph().endpoints, parameters_of(session, node), parts)
+
+
+def service_definitions(
+    observer: Node, node: str, local_domain: int | None
+) -> dict[tuple[Category, str], dict[str, str]]:
+    """The hashes of the parts of a node's services and actions, by category and name.
+
+    DDS tells those of requests and responses, our transport those of whole services.
+    """
+    whole = {} if local_domain is None else discovery.service_hashes(local_domain)
+    found: dict[tuple[Category, str], dict[str, str]] = {}
+    for part in ros_graph.service_parts(observer):
+        if part.node != node:
+            continue
+        action, sign, _ = part.service.partition("/_action/")
+        kind = "action" if sign else "service"
+        category = Category(f"{kind}_{'servers' if part.is_server else 'clients'}")
+        hashes = found.setdefault((category, action), {})
+        if (of_service := whole.get(part.gid)) is not None:
+            hashes[part.type_name.removesuffix("_Request").removesuffix("_Response")] = of_service
+        else:
+            hashes[part.type_name] = part.type_hash
+    return found
 
 
 def remaps_of(texts: Iterable[str]) -> list[tuple[str, str]]:

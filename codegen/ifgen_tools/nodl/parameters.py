@@ -48,9 +48,17 @@ class RunningParameter:
 
 def parameters_of(session: Session, node: str) -> tuple[RunningParameter, ...] | None:
     """The parameters of a node; None if it has no parameter services or they do not answer."""
+    found = described_parameters(session, node)
+    return None if found is None else tuple(running_parameter(*pair) for pair in found)
+
+
+def described_parameters(
+    session: Session, node: str
+) -> list[tuple[ParameterDescriptor, ParameterValue | None]] | None:
+    """The descriptors and values of a node's parameters; None if its parameter services do not answer."""
     try:
         with remote_parameters(session, node, _PATIENCE) as remote:
-            return tuple(running_parameter(descriptor, value) for descriptor, value in remote.all())
+            return remote.all()
     except ToolError:
         return None
 

@@ -13,32 +13,68 @@ from ifgen.definition.problems import FileProblems
 from ifgen.diagnostics import Diagnostic, InputError, Label
 from ifgen.nodl import document
 from ifgen.nodl.load import Loaded
-from ifgen.nodl.model import Category, Interface
-from ifgen.nodl.syntax.tree import ListNode, MapNode, ScalarNode, source_text
+from ifgen.nodl.model import Category, Interface, Parameter
+from ifgen.nodl.syntax.tree import Foreign, ListNode, MapNode, Node, ScalarNode, source_text
 from ifgen.nodl.yaml_lines import description_lines
 from ifgen.reading.packages import NodeFile
+
+from ifgen_tools.nodl import document as output
 
 _LOCAL = "local://"
 
 
 def merged(loaded: Loaded, *, as_json: bool = False) -> str:
-    """One document without includes and `codegen`, as YAML or JSON."""
-    ends = loaded.whole.endpoints
-    lists: dict[str, Any] = {
-        category.value: tuple(end for end in ends if end.category is category) for category in Category
-    }
-    whole = replace(
+    """One document without includes and `codegen`, as YAML or JSON.
+
+    It says what its documents say, as they say it: a default that has not its parameter's type stays.
+    """
+    found: dict[str, Any] = {"nodl_version": document.VERSION}
+    if loaded.description.description:
+        found["description"] = loaded.description.description
+    parameters: dict[str, Any] = {}
+    lists: dict[str, list[Any]] = {category.value: [] for category in Category}
+    for root in (each.root for each in loaded.documents):
+        written = root.get("parameters") if root else None
+        parameters.update(_plain(written) if written else {})
+        for name, endpoints in lists.items():
+            endpoints.extend(_plain(node) if root and (node := root.get(name)) else ())
+    for parameter in loaded.whole.parameters:
+        if parameter.name not in parameters:
+            parameters.update(_expanded(parameter, loaded))
+        default = parameter.default
+        if default is not None:
+            value = list(default) if isinstance(default, tuple | bytes) else default
+            parameters[parameter.name]["default_value"] = value
+    found.update({name: value for name, value in {"parameters": parameters, **lists}.items() if value})
+    return output.as_json(found, []) if as_json else output.as_yaml(found, [])
+
+
+def _plain(node: Node) -> Any:
+    """A node as Python's own values; what JSON lacks, such as a date, as it is written."""
+    match node:
+        case ScalarNode(Foreign()):
+            return source_text(node)
+        case ScalarNode(value):
+            return value
+        case ListNode(items):
+            return [_plain(item) for item in items]
+        case MapNode(entries):
+            return {key.name: _plain(value) for key, value in entries}
+
+
+def _expanded(parameter: Parameter, loaded: Loaded) -> dict[str, Any]:
+    """A parameter that `codegen.ifgen` expands, which no document writes out."""
+    lists: dict[str, Any] = {category.value: () for category in Category}
+    alone = replace(
         loaded.description,
-        parameters=loaded.whole.parameters,
+        description="",
+        parameters=(parameter,),
         reserved=Interface(),
         references=(),
         codegen=(),
         **lists,
     )
-    text = "".join(f"{line}\n" for line in ("nodl_version: 2", *description_lines(whole)))
-    if not as_json:
-        return text
-    return json.dumps(yaml.safe_load(text), indent=2, ensure_ascii=False) + "\n"
+    return dict(yaml.safe_load("\n".join(description_lines(alone)))["parameters"])
 
 
 def rewritten(path: Path, replaced: Iterable[tuple[str, str]]) -> str:

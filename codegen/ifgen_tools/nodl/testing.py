@@ -68,8 +68,10 @@ def assert_conforms(
     end = time.monotonic() + timeout
     try:
         while True:
-            queues = {} if find_spec("rmw_local") is None else discovery.queues(node.context.get_domain_id())
-            seen = side_of_node(name, ros_graph.read(peer, queues).endpoints, _parameters(node))
+            domain = None if find_spec("rmw_local") is None else node.context.get_domain_id()
+            queues = {} if domain is None else discovery.queues(domain)
+            parts = contract.service_definitions(peer, name, domain)
+            seen = side_of_node(name, ros_graph.read(peer, queues).endpoints, _parameters(node), parts)
             report = compare(side, seen, choices)
             if not report.failures or time.monotonic() > end:
                 break

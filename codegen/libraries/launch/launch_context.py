@@ -158,6 +158,10 @@ class LaunchContext:
         self.launch_configurations: dict[str, Any] = {}
         self.environment: MutableMapping[str, str] = os.environ
         self.is_shutdown = False
+        self.runs_programs = True
+        """Whether `Command` runs: not where a description is only checked."""
+        self.runs_python = True
+        """Whether `PythonExpression` runs."""
         self.event_handlers: list[BaseEventHandler] = []
         self.packages: Packages = InstalledPackages()
         self.files = Files()

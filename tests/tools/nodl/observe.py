@@ -7,11 +7,10 @@ import sys
 from pathlib import Path
 
 from ifgen_tools.beside import session_beside
-from ifgen_tools.nodl.conformance import side_of_node
-from ifgen_tools.nodl.parameters import parameters_of
+from ifgen_tools.nodl import contract
 
 transport, program, file = sys.argv[1:]
 with session_beside([[program]], transport) as session:  # type: ignore[arg-type]
     [node] = session.graph().visible().nodes
-    side = side_of_node(node, session.graph().endpoints, parameters_of(session, node))
+    side = contract.seen(session, node)
 Path(file).write_bytes(pickle.dumps(side))

@@ -8,6 +8,7 @@ import random
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,7 @@ def edits() -> Iterator[Callable[[Tree], Edit]]:
     def in_qos(key: str, value: object) -> Callable[[Tree], set[str]]:
         def change(found: Tree) -> set[str]:
             found["qos"][key] = value
-            return {"qos_mismatch", "unverifiable"} if key == "depth" else {"qos_mismatch"}
+            return {"qos_mismatch", "unverifiable"} if key in {"depth", "history"} else {"qos_mismatch"}
 
         return change
 
@@ -106,6 +107,9 @@ def edits() -> Iterator[Callable[[Tree], Edit]]:
                 yield end(category, index, in_qos("depth", qos["depth"] + 1))
                 yield end(category, index, in_qos("deadline_ns", 7_000_000))
                 yield end(category, index, in_qos("lifespan_ns", 7_000_000))
+                yield end(category, index, in_qos("liveliness_lease_duration_ns", 7_000_000))
+                other = "KEEP_LAST" if qos["history"] == "KEEP_ALL" else "KEEP_ALL"
+                yield end(category, index, in_qos("history", other))
     for name, said in DOCUMENT["parameters"].items():
         yield drop_parameter(name)
         if "default_value" not in said:
@@ -114,6 +118,9 @@ def edits() -> Iterator[Callable[[Tree], Edit]]:
             name, "type", "bool_array" if said["type"] != "bool_array" else "int", "type_mismatch"
         )
         yield parameter(name, "read_only", not said.get("read_only", False), "property_mismatch")
+        if said["type"] in {"bool", "string"}:
+            other_value: Any = "other" if said["type"] == "string" else not said["default_value"]
+            yield parameter(name, "default_value", other_value, "property_mismatch")
         if said["type"] in {"int", "double"} and "default_value" in said:
             yield parameter(name, "validation", {"bounds": [-1000, 1000]}, "property_mismatch")
             yield parameter(name, "default_value", 7, "property_mismatch")
@@ -164,6 +171,20 @@ def test_two_hundred_edits(tmp_path: Path, seen: Side) -> None:
             missed.append((section, name, kinds, new))
     assert missed == []
     assert len(EDITS) > 50
+
+
+def test_definitions_of_services_and_actions(seen: Side) -> None:
+    """Each of their parts has its hash, and one that differs is noticed."""
+    services = [end for end in seen.ends if end.category.folder != "msg"]
+    assert {end.category.value for end in services} >= {"service_servers", "action_servers"}
+    for end in services:
+        assert end.parts, end
+        for type_name, type_hash in end.parts.items():
+            assert type_hash.startswith("RIHS01_")
+            said = replace(end, parts={type_name: "RIHS01_other"})
+            [found] = compare(Side((said,), ()), Side((end,), ()), Choices()).differences
+            assert (found.kind, found.name) == ("hash_mismatch", end.name)
+            assert type_name in found.detail
 
 
 def test_rules_to_ignore(tmp_path: Path, seen: Side) -> None:

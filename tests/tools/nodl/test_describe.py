@@ -24,8 +24,8 @@ from ifgen.nodl.model import (
 )
 from ifgen.nodl.names import expanded
 from ifgen_tools import ros_graph
-from ifgen_tools.nodl.commands import choose
 from ifgen_tools.nodl.document import as_json, as_yaml, document_of
+from ifgen_tools.nodl.node_verbs import choose
 from ifgen_tools.nodl.parameters import RunningParameter
 
 from tests.nodl.conftest import load_from
@@ -38,7 +38,12 @@ SLOWLY_ON_REAL = ["local", pytest.param("rclpy", marks=[needs_rclpy, pytest.mark
 
 def run(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     """Run `ifgen nodl describe` in a process."""
-    command = [sys.executable, "-m", "ifgen", "nodl", "describe", *words]
+    return ifgen_nodl(folder, "describe", *words)
+
+
+def ifgen_nodl(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    """Run `ifgen nodl` in a process."""
+    command = [sys.executable, "-m", "ifgen", "nodl", *words]
     return subprocess.run(command, capture_output=True, text=True, timeout=60, cwd=folder, check=False)
 
 

@@ -91,7 +91,7 @@ def test_rewrite_merges(folder: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert nodl("rewrite", "talker.nodl.yaml", "--merge") == 0
     merged = yaml.safe_load(capsys.readouterr().out)
     assert merged.keys() == {"nodl_version", "parameters", "publishers"}
-    assert merged["publishers"][0]["type"] == "std_msgs/msg/String"
+    assert merged["publishers"][0]["type"] == "std_msgs/String"
     assert nodl("rewrite", "talker.nodl.yaml", "--merge", "-o", "merged.json") == 0
     assert json.loads((folder / "merged.json").read_text()) == merged
 

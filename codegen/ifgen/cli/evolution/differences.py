@@ -14,6 +14,7 @@ import click
 from ifgen.cli.generate import without_garbage_collection
 from ifgen.command_kit import completion, terminal
 from ifgen.command_kit.options import EXISTING, format_option, include_option, quiet_option
+from ifgen.command_kit.system import extension
 from ifgen.config.settings import Settings, settle
 from ifgen.config.suppressions import Policy, by_comments
 from ifgen.diagnostics import Diagnostic, Source, UsageError
@@ -40,7 +41,6 @@ _HASH: Final = 23
 @click.option(
     "--against",
     metavar="REF",
-    required=True,
     shell_complete=completion.revisions,
     help="The earlier version: a git revision, a folder, or a lock file.",
 )
@@ -52,14 +52,16 @@ _HASH: Final = 23
 @click.option(
     "--allow-no-commit", is_flag=True, help="Succeed where the repository has no commit yet: for hooks."
 )
+@click.option("--system", is_flag=True, help="Compare two manifests of a system, the older one first.")
 @include_option
 @format_option
 @quiet_option
 def breaking(
     paths: tuple[Path, ...],
-    against: str,
+    against: str | None,
     category: str | None,
     allow_no_commit: bool,
+    system: bool,
     include: tuple[Path, ...],
     format_: str,
     quiet: bool,
@@ -76,9 +78,20 @@ def breaking(
 
     PATH is as for `ifgen check`. Exits with 1 if a change breaks the category. `ifgen rules` lists the rules,
     which `ignore` and `per_file_ignores` in [tool.ifgen] and comments silence as they do warnings.
+
+    With --system, PATH is two manifests, OLD and NEW, which `ifgen check --system --lock` writes: each change
+    of what they provide and require is patch, minor or major. Exits with 1 if one is major.
     """  # noqa: D301 - the backspace is for click, which keeps the lines after it as they are
     from ifgen.reading import revisions
 
+    if system:
+        if len(paths) != 2 or against or category:
+            message = "--system compares two manifests: OLD and NEW"
+            raise click.UsageError(message, click.get_current_context())
+        code: int = extension("breaking")(*paths, format_, quiet=quiet)
+        return code
+    if against is None:
+        raise click.UsageError("Missing option '--against'.", click.get_current_context())
     settings = settle(paths, None, include).with_paths()
     if allow_no_commit and revisions.has_no_commit(Path.cwd()):
         return 0

@@ -113,7 +113,9 @@ def _package_files(
     `requirements` says what pip installs for packages that its package.xml declares.
     """
     metadata = package.metadata or PackageMetadata()
-    depends = tuple(sorted(uses(package, interfaces) - {package.name}))
+    # The package of a base class has, by ROS' habit, the name of its module.
+    bases = {node.base.module.partition(".")[0] for node in package.nodes if node.base}
+    depends = tuple(sorted((uses(package, interfaces) | bases) - {package.name, "rclpy"}))
     further = further_dependencies(metadata, {*depends, package.name})
     required = requirements_of(further, requirements)
     description = metadata.description or f"Nodes of {package.name}."

@@ -117,6 +117,11 @@ def code_point(span: Span) -> Diagnostic:
     return Diagnostic("yaml-syntax", message, Label(span))
 
 
+def reserved(span: Span, text: str) -> Diagnostic:
+    """Say that YAML 1.1 has a meaning of its own for a text."""
+    return Diagnostic("yaml-syntax", f"YAML 1.1 reserves `{text}`", Label(span), help="write it in quotes")
+
+
 def bad_number(span: Span, text: str) -> Diagnostic:
     """Say that a number cannot be read."""
     return Diagnostic("invalid-number", f"`{text}` is not a number that can be read", Label(span))

@@ -180,7 +180,7 @@ class _Composer:
                 case "bool":
                     return _CONSTRUCTOR.construct_yaml_bool(node)
                 case "int" | "float" if ":" in text:
-                    return text  # YAML 1.1 reads 1:30 as 90, people and nodes as a text
+                    return Foreign("a number in base 60")  # people and nodes read 1:30 as a text
                 case "int":
                     value = int(_CONSTRUCTOR.construct_yaml_int(node))
                     if _LEADING_ZERO.fullmatch(text) and int(text, 10) != value:
@@ -190,6 +190,9 @@ class _Composer:
                     return float(_CONSTRUCTOR.construct_yaml_float(node))
                 case "timestamp":
                     return Foreign("a date")
+                case "value":
+                    self._problems.error(explain_syntax.reserved, span, text)
+                    return text
                 case _:
                     return text
         except ValueError:  # an integer of thousands of digits, `0b`, `0x_`
@@ -207,6 +210,8 @@ class _Composer:
             if isinstance(key, ScalarNode) and key.value == "<<" and key.plain:
                 merged += self._merged(value)
                 continue
+            if isinstance(value, ScalarNode) and value.value == "<<" and value.plain:
+                self._problems.error(explain_syntax.reserved, value.span, "<<")
             name = self._key(key)
             if name is None:
                 continue

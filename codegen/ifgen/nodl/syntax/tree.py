@@ -193,7 +193,7 @@ def integer(parent: MapNode, key: str, minimum: int, maximum: int, problems: Fil
             if minimum <= value <= maximum:
                 return int(value)
             problems.error(out_of_range, node, f"`{key}`", minimum, maximum)
-            return 0
+            return max(minimum, min(maximum, int(value)))
         case _:
             pass
     problems.error(wrong_value, node, f"`{key}`", f"an integer from {minimum} to {maximum}")
@@ -244,9 +244,10 @@ def wrong_value(node: Node, name: str, expected: str) -> Diagnostic:
 def out_of_range(node: ScalarNode, name: str, minimum: int, maximum: int) -> Diagnostic:
     """Say that an integer is too small or too large."""
     assert isinstance(node.value, int | float)
-    limit = f"{minimum} or more" if node.value < minimum else f"{maximum} or less"
+    is_small = node.value < minimum
+    limit = f"{minimum} or more" if is_small else f"{maximum} or less"
     return Diagnostic(
-        "wrong-value",
+        "wrong-value" if is_small else "too-large-number",
         f"{name} must be {limit}",
         Label(node.span, f"this is {shorten(source_text(node))}"),
         help="to leave it open, write 0 or leave out the key" if minimum == 0 else None,

@@ -51,6 +51,8 @@ class PythonExpression(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the value as a text. Raises SubstitutionFailure."""
         expression = perform_substitutions(context, self.expression)
+        if not context.runs_python:
+            raise SubstitutionFailure(f"the Python expression '{expression}' is not to be run")
         names: dict[str, Any] = {}
         try:
             for module in self.python_modules:

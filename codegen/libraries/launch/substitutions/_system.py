@@ -59,6 +59,8 @@ class Command(Substitution):
         mode = perform_substitutions(context, self.on_stderr)
         if mode not in {"fail", "ignore", "warn", "capture"}:
             raise SubstitutionFailure(f"on_stderr must be fail, ignore, warn or capture, got '{mode}'")
+        if not context.runs_programs:
+            raise SubstitutionFailure(f"the command '{command}' runs only when the launch does")
         try:
             words = shlex.split(command)
             done = subprocess.run(

@@ -14,9 +14,10 @@ import numpy as np
 from ..spatial import quaternion_of, rotation_rpy
 from . import table
 from .feet import Foot, measured_foot
-from .joint_map import KNOWN_JOINTS, REQUIRED_JOINTS, Frame, JointMap, ModelError
+from .joint_map import KNOWN_JOINTS, REQUIRED_JOINTS, Frame, JointMap
 from .measuring import at_zero
 from .model import SoleGeometry
+from .table import ModelError
 
 _JOINT = {link.name: link.joint.name for link in table.LINKS if link.joint is not None}
 _USUAL = {joint.name: joint for joint in table.JOINTS}

@@ -26,9 +26,10 @@ import numpy as np
 
 from .adapting import Adapter
 from .body import OURS, STRAIGHT_HEIGHT
-from .joint_map import JointMap, ModelError, read_map
+from .joint_map import JointMap, read_map
 from .model import SOLE, HumanoidModel, Names, describe, load
 from .obstacles import Solid, add_solids
+from .table import ModelError
 from .walkable import check_parts, check_walkable
 
 _MEASURED = 1e-4  # metres and radians: how exactly a body can be measured

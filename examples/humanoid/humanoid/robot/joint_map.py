@@ -13,6 +13,7 @@ import yaml
 
 from . import table
 from .model import SoleGeometry
+from .table import ModelError
 
 _KEYS = ("base", "torso", "sole", "joints", "frames")
 _SOLE_KEYS = ("centre", "length", "width")
@@ -25,10 +26,6 @@ KNOWN_JOINTS = (
 )
 """The joints that have a meaning for us, in the order of every array over joints."""
 _FRAMES = (*(frame.name for frame in table.FRAMES), "l_ankle", "r_ankle")
-
-
-class ModelError(Exception):
-    """A model or a joint map that cannot be used; the text names the file and the element."""
 
 
 @dataclass(frozen=True, slots=True)

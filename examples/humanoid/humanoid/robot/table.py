@@ -14,6 +14,11 @@ Vector = tuple[float, float, float]
 
 NAME = "ifgen_humanoid"
 
+
+class ModelError(Exception):
+    """A model or a joint map that cannot be used; the text names the file and the element."""
+
+
 HIP_OFFSET: Vector = (0.0, 0.09, -0.06)  # of the left hip in base_link
 THIGH = SHIN = 0.30
 ANKLE_HEIGHT = 0.06  # of the ankle's axes above the sole

@@ -9,9 +9,9 @@ import numpy as np
 
 from ..data import SECOND
 from . import table
-from .joint_map import ModelError
 from .measuring import at_zero, measure
 from .model import GRAVITY, PERIOD, HumanoidModel
+from .table import ModelError
 
 _ALIGNED = 0.05  # sine of the angle between an axis and ours
 _LIKE_OURS = 0.7  # cosine of the same, for arms, whose zero is not always hanging down

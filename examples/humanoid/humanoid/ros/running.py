@@ -11,7 +11,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 
-from ..robot.joint_map import ModelError
+from ..robot.table import ModelError  # not from where MuJoCo is: launch files import this module
 
 _NOTING = 0.2  # s that rclpy has to note a signal
 

@@ -24,7 +24,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from ..data import Mode
 from ..robot.external import load_model
-from ..robot.joint_map import ModelError
+from ..robot.table import ModelError
 from ..ros.messages import printable
 from ..simulation.rendering import RenderingError, check
 from . import crew, parts, report
