@@ -174,6 +174,8 @@ class _WaitSet:
 
     def __init__(self, node: Node, loop: asyncio.AbstractEventLoop, end: Callable[[], object]) -> None:
         self._context = node.context
+        # Asked by the thread: the context itself holds a lock while its shutdown waits for the thread.
+        self._handle = node.context.handle
         self._loop = loop
         self._end = end
         self._bells: dict[Any, Bell] = {}
@@ -226,10 +228,10 @@ class _WaitSet:
             try:
                 ready = self._wait(list(armed))
             except (RuntimeError, _rclpy.RCLError):
-                if self._context.ok():
+                if self._handle.ok():
                     raise
                 ready = []
-            if not self._context.ok():
+            if not self._handle.ok():
                 ring_later(self._loop, self._end)
                 return
             with self._lock:
