@@ -12,14 +12,13 @@ from typing import Any, TypeVar
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.client import Client
 from rclpy.exceptions import InvalidHandle
-from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from rclpy.task import Future
 from rclpy.timer import Timer
 
-from rclpy_asyncio.readiness import Bell, Sources, make_sources, ring_later
+from rclpy_asyncio.readiness import Bell, RCLError, Sources, make_sources, ring_later
 
 T = TypeVar("T")
 Unfinished = Coroutine[Any, Any, Any] | None
@@ -82,7 +81,7 @@ class Port:
                 await bell.wait()
         except InvalidHandle:
             pass
-        except _rclpy.RCLError:
+        except RCLError:
             if self._entity.handle.pointer:
                 raise
         finally:
@@ -262,7 +261,14 @@ class Driver:
             return
         node = self.node
         present = dict.fromkeys(self._serving)
-        for kind in (node.timers, node.subscriptions, node.clients, node.services, node.guards, node.waitables):
+        for kind in (
+            node.timers,
+            node.subscriptions,
+            node.clients,
+            node.services,
+            node.guards,
+            node.waitables,
+        ):
             present.update(dict.fromkeys(kind))
         for entity in [each for each in self._tasks if each not in present]:
             self.forget(entity)

@@ -178,9 +178,7 @@ class AsyncNode:
         if content_filter_options is not None:
             options = {"content_filter_options": content_filter_options}
         entity = self._node.create_subscription(msg_type, topic, callback, qos_profile, raw=raw, **options)
-        wrapper = AsyncSubscription(
-            self._driver, entity, self._node.destroy_subscription, self._entities.pop
-        )
+        wrapper = AsyncSubscription(self._driver, entity, self._node.destroy_subscription, self._entities.pop)
         return self._keep(wrapper.start(concurrent=concurrent))
 
     def create_service(

@@ -30,6 +30,7 @@ _ADD = {
     Service: "add_service",
 }
 _PLACES = tuple(_ADD)
+RCLError = _rclpy.RCLError
 
 
 class Bell:
@@ -227,7 +228,7 @@ class _WaitSet:
                 armed = dict(self._armed)
             try:
                 ready = self._wait(list(armed))
-            except (RuntimeError, _rclpy.RCLError):
+            except RuntimeError:
                 if self._handle.ok():
                     raise
                 ready = []

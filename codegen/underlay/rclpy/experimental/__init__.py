@@ -8,7 +8,17 @@ from rclpy.impl.reexports import reexport
 
 from .events_executor import EventsExecutor
 
-if not TYPE_CHECKING:
+if TYPE_CHECKING:
+    from rclpy_asyncio import (
+        AsyncClient,
+        AsyncClock,
+        AsyncNode,
+        AsyncPublisher,
+        AsyncService,
+        AsyncSubscription,
+        AsyncTimer,
+    )
+else:
     __getattr__ = reexport(__name__)
 
 __all__ = ["EventsExecutor"]

@@ -125,6 +125,16 @@ _INTROSPECTION = {
     "Clock": "rclpy.clock",
     "ServiceIntrospectionState": "rclpy.service_introspection",
 }
+# The modules of upstream's asyncio, and the class of each.
+_ASYNC = {
+    "async_client": "AsyncClient",
+    "async_clock": "AsyncClock",
+    "async_node": "AsyncNode",
+    "async_publisher": "AsyncPublisher",
+    "async_service": "AsyncService",
+    "async_subscription": "AsyncSubscription",
+    "async_timer": "AsyncTimer",
+}
 
 NAMES: Final[dict[Distro, dict[str, dict[str, str]]]] = {
     _KILTED: {
@@ -215,19 +225,9 @@ NAMES: Final[dict[Distro, dict[str, dict[str, str]]]] = {
         "rclpy.wait_for_message": {"MsgT": _TYPES},
     },
     _LYRICAL: {
-        "rclpy.exceptions": {"TimeSourceChangedError": ""},
-        "rclpy.experimental": dict.fromkeys(
-            (
-                "AsyncClient",
-                "AsyncClock",
-                "AsyncNode",
-                "AsyncPublisher",
-                "AsyncService",
-                "AsyncSubscription",
-                "AsyncTimer",
-            ),
-            "",
-        ),
+        "rclpy.exceptions": {"TimeSourceChangedError": "rclpy_asyncio"},
+        "rclpy.experimental": dict.fromkeys(_ASYNC.values(), "rclpy_asyncio"),
+        **{f"rclpy.experimental.{module}": {name: "rclpy_asyncio"} for module, name in _ASYNC.items()},
         "rclpy.client": {"BaseClient": ""},
         "rclpy.clock": {"BaseClock": ""},
         "rclpy.node": {"BaseNode": "", "ServiceEndpointInfo": "rclpy.impl.newer"},

@@ -43,7 +43,9 @@ async def test_metadata(name: str) -> None:
     got: list[tuple[Any, Any]] = []
     async with AsyncNode(name) as node:
         publisher = node.create_publisher(String, name, 10)
-        subscription = node.create_subscription(String, name, lambda message, info: got.append((message, info)), 10)
+        subscription = node.create_subscription(
+            String, name, lambda message, info: got.append((message, info)), 10
+        )
         await met(publisher, subscription)
         publisher.publish(String(data="hello"))
         await eventually(lambda: got)

@@ -118,9 +118,7 @@ async def test_parameter_services(name: str) -> None:
         asked = GetParameters.Request(names=["answer"])
         before = await get.call(asked)
         value = ParameterValue(type=ParameterType.PARAMETER_INTEGER, integer_value=99)
-        result = await put.call(
-            SetParameters.Request(parameters=[ParameterMsg(name="answer", value=value)])
-        )
+        result = await put.call(SetParameters.Request(parameters=[ParameterMsg(name="answer", value=value)]))
         after = await get.call(asked)
     assert before.values[0].integer_value == 42
     assert result.results[0].successful
@@ -182,7 +180,10 @@ async def test_graph(name: str) -> None:
         node.create_publisher(String, name, 1)
         node.create_service(AddTwoInts, f"{name}/add", _add)
         await node.wait_for_node(name)
-        topic, service = (f"/{name}", ["std_msgs/msg/String"]), (f"/{name}/add", ["example_interfaces/srv/AddTwoInts"])
+        topic, service = (
+            (f"/{name}", ["std_msgs/msg/String"]),
+            (f"/{name}/add", ["example_interfaces/srv/AddTwoInts"]),
+        )
         await eventually(lambda: topic in node.get_topic_names_and_types())
         await eventually(lambda: service in node.get_service_names_and_types())
         assert name in node.get_node_names()
@@ -225,12 +226,16 @@ async def test_another_node(name: str) -> None:
         other.create_client(AddTwoInts, f"/{name}/add")
         await node.wait_for_node(f"/far/{name}_other")
         await eventually(
-            lambda: (f"/{name}", ["std_msgs/msg/String"])
-            in node.get_subscriber_names_and_types_by_node(f"{name}_other", "/far")
+            lambda: (
+                (f"/{name}", ["std_msgs/msg/String"])
+                in node.get_subscriber_names_and_types_by_node(f"{name}_other", "/far")
+            )
         )
         await eventually(
-            lambda: (f"/{name}/add", ["example_interfaces/srv/AddTwoInts"])
-            in node.get_client_names_and_types_by_node(f"{name}_other", "/far")
+            lambda: (
+                (f"/{name}/add", ["example_interfaces/srv/AddTwoInts"])
+                in node.get_client_names_and_types_by_node(f"{name}_other", "/far")
+            )
         )
 
 
