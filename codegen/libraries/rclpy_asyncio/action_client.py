@@ -9,7 +9,6 @@ from collections.abc import AsyncIterator, Callable
 from types import TracebackType
 from typing import Any
 
-from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
 from rclpy.action import ActionClient
 from rclpy.action.client import ClientGoalHandle
@@ -34,7 +33,7 @@ class AsyncActionClient:
         on_destroy: Callable[[AsyncActionClient], object],
         *,
         feedback_sub_qos_profile: QoSProfile,
-        **profiles: QoSProfile,
+        **profiles: Any,
     ) -> None:
         self._driver = driver
         self._name = action_name
@@ -131,12 +130,12 @@ class AsyncGoalHandle:
         feedback_callback: Callable[[Any], Any] | None,
         goal_uuid: Any,
     ) -> None:
-        self._client = client
-        self._driver = client._driver
+        self._client: Any = client  # it shares what others need not see
+        self._driver: Driver = self._client._driver
         self._goal = goal
         self._goal_uuid = goal_uuid
         self._feedback_callback = feedback_callback
-        self._feedback: deque[Any] = deque(maxlen=max(client._depth, 1))
+        self._feedback: deque[Any] = deque(maxlen=max(self._client._depth, 1))
         self._news = asyncio.Event()  # set for each feedback, and at the end
         self._is_ended = False
         self._handle: ClientGoalHandle[Any]
@@ -190,7 +189,8 @@ class AsyncGoalHandle:
 
     async def cancel(self) -> CancelGoal.Response:
         """Ask for the goal to be cancelled, and return the response."""
-        return await self._answer(self._handle.cancel_goal_async())
+        response: CancelGoal.Response = await self._answer(self._handle.cancel_goal_async())
+        return response
 
     async def __aenter__(self) -> AsyncGoalHandle:
         await self.open()
@@ -295,6 +295,3 @@ class AsyncGoalHandle:
             self._driver.node.get_logger().warning(
                 f"the server of {self._client._name} refuses to cancel a goal, which goes on"
             )
-
-
-__all__ = ["AsyncActionClient", "AsyncGoalHandle", "GoalRejectedError", "GoalStatus"]

@@ -5,10 +5,11 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import rclpy.timer
-from rclpy.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
+from rclpy.clock import ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
 from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
 from rclpy.time import Time
@@ -146,9 +147,9 @@ class AsyncClock:
         for sleeper in list(self._sleepers):
             if switched:
                 error = TimeSourceChangedError("simulated time was switched on or off during a sleep")
-                ring_later(sleeper.loop, lambda done=sleeper.done, error=error: _settle(done, error))
+                ring_later(sleeper.loop, partial(_settle, sleeper.done, error))
             elif self.ros_time_is_active and now >= sleeper.until:
-                ring_later(sleeper.loop, lambda done=sleeper.done: _settle(done, None))
+                ring_later(sleeper.loop, partial(_settle, sleeper.done, None))
         for bell in list(self._bells):
             bell.ring()
 

@@ -22,6 +22,7 @@ from rclpy_asyncio.readiness import Bell, RCLError, Sources, make_sources, ring_
 
 T = TypeVar("T")
 Unfinished = Coroutine[Any, Any, Any] | None
+Working = tuple[Callable[[], Any], Callable[[Any], Unfinished]]  # what a Port takes by, and what it runs
 
 MOST_AT_ONCE = 100
 """How many callbacks of one entity run at a time with `concurrent=True`; more wait in its history."""
@@ -160,7 +161,7 @@ class Driver:
 
         These end by themselves, also after `stop`, so that clients hear of the end.
         """
-        coroutine = callback if inspect.iscoroutine(callback) else _call(callback, args)
+        coroutine: Any = callback if isinstance(callback, Coroutine) else _call(callback, args)
         task = self.loop.create_task(coroutine)
         self.goals.add(task)
         task.add_done_callback(self.goals.discard)
@@ -220,10 +221,13 @@ class Driver:
         kind: type[BaseException] | None,
         error: BaseException | None,
         traceback: TracebackType | None,
-    ) -> bool | None:
-        """Wait for all tasks; raises their exceptions and that of the body in an ExceptionGroup."""
+    ) -> None:
+        """Wait for all tasks; raises their exceptions and that of the body in an ExceptionGroup.
+
+        A CancelledError of the body goes on as it is.
+        """
         try:
-            return await self._group.__aexit__(kind, error, traceback)
+            await self._group.__aexit__(kind, error, traceback)
         finally:
             if self.goals:
                 await asyncio.wait(self.goals)
@@ -274,8 +278,9 @@ class Driver:
             self.forget(entity)
         for entity in present:
             if entity not in self._tasks:
-                serve = self._serving.get(entity) or (lambda entity=entity: self._serve_as_usual(entity))
-                self._tasks[entity] = self._group.create_task(serve())
+                serve = self._serving.get(entity)
+                serving = self._serve_as_usual(entity) if serve is None else serve()
+                self._tasks[entity] = self._group.create_task(serving)
 
     async def _serve_as_usual(self, entity: Any) -> None:
         """Run an entity as an executor does: its callback group decides what runs beside it."""
@@ -351,22 +356,25 @@ async def wrap_future(future: Future[T], *, give_up: bool = True) -> T:
 # How to take from each kind, and what to do with what was taken
 
 
-def take_message(driver: Driver, entity: Subscription[Any]) -> tuple[Any, Any]:
+def take_message(driver: Driver, entity: Subscription[Any]) -> Working:
     """Return how to take a message of a subscription, and how to call back with it."""
     handle: Any = entity.handle
     callback = entity.callback
-    if takes(callback, 1):
-        # Ours can take a message without its metadata.
-        take = getattr(handle, "take", None)
-        if take is not None:
-            return lambda: take(entity.raw), lambda taken: remaining(callback(taken[0]))
-        take_one = lambda: handle.take_message(entity.msg_type, entity.raw)  # noqa: E731 - one of two
-        return take_one, lambda taken: remaining(callback(taken[0]))
-    take_both = lambda: handle.take_message(entity.msg_type, entity.raw)  # noqa: E731 - one of two
-    return take_both, lambda taken: remaining(callback(*taken))
+    take_at_once = getattr(handle, "take", None)  # ours can take a message without its metadata
+    wants_info = not takes(callback, 1)
+
+    def take() -> Any:
+        if wants_info or take_at_once is None:
+            return handle.take_message(entity.msg_type, entity.raw)
+        return take_at_once(entity.raw)
+
+    def run(taken: Any) -> Unfinished:
+        return remaining(callback(*taken) if wants_info else callback(taken[0]))
+
+    return take, run
 
 
-def take_request(driver: Driver, entity: Service[Any]) -> tuple[Any, Any]:
+def take_request(driver: Driver, entity: Service[Any]) -> Working:
     """Return how to take a request of a service, and how to respond to it."""
     handle: Any = entity.handle
     fail = getattr(handle, "fail", None)  # ours tells the client
@@ -401,7 +409,7 @@ def take_request(driver: Driver, entity: Service[Any]) -> tuple[Any, Any]:
     return take, run
 
 
-def take_response(driver: Driver, entity: Client[Any]) -> tuple[Any, Any]:
+def take_response(driver: Driver, entity: Client[Any]) -> Working:
     """Return how to take a response for a client, and how to complete its future."""
     handle: Any = entity.handle
     take_failure = getattr(handle, "take_failure", None)  # ours says that a server has gone
@@ -415,7 +423,7 @@ def take_response(driver: Driver, entity: Client[Any]) -> tuple[Any, Any]:
     def run(taken: Any) -> Unfinished:
         header, response = taken
         try:
-            future = entity.get_pending_request(header.request_id.sequence_number)
+            future: Any = entity.get_pending_request(header.request_id.sequence_number)
         except KeyError:  # given up
             return None
         if isinstance(response, Exception):
@@ -427,7 +435,7 @@ def take_response(driver: Driver, entity: Client[Any]) -> tuple[Any, Any]:
     return take, run
 
 
-def take_waitable(driver: Driver, entity: Any, idle: Callable[[], None] | None = None) -> tuple[Any, Any]:
+def take_waitable(driver: Driver, entity: Any, idle: Callable[[], None] | None = None) -> Working:
     """Return how to take the data of a waitable, and how to execute it; `idle` is called before each wait."""
 
     def take() -> Any:
@@ -437,7 +445,11 @@ def take_waitable(driver: Driver, entity: Any, idle: Callable[[], None] | None =
             idle()
         return None
 
-    return take, lambda taken: entity.execute(taken[0])
+    def run(taken: Any) -> Unfinished:
+        begun: Unfinished = entity.execute(taken[0])
+        return begun
+
+    return take, run
 
 
 _PORTS: dict[type, Any] = {Subscription: take_message, Service: take_request, Client: take_response}

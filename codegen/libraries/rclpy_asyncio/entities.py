@@ -17,10 +17,10 @@ from rclpy_asyncio.driver import (
     MOST_AT_ONCE,
     Driver,
     Port,
-    wrap_future,
     take_message,
     take_request,
     take_response,
+    wrap_future,
 )
 
 EntityT = TypeVar("EntityT", bound="Publisher[Any] | Subscription[Any] | Service[Any] | Client[Any]")

@@ -19,7 +19,7 @@ from rclpy_asyncio.action_client import AsyncActionClient
 from rclpy_asyncio.action_server import ActionCallbacks, AsyncActionServer
 from rclpy_asyncio.clock import AsyncClock, AsyncTimer, run_timer
 from rclpy_asyncio.driver import Driver
-from rclpy_asyncio.entities import AsyncClient, AsyncEntity, AsyncPublisher, AsyncService, AsyncSubscription
+from rclpy_asyncio.entities import AsyncClient, AsyncPublisher, AsyncService, AsyncSubscription
 from rclpy_asyncio.readiness import Bell, ring_later
 
 P = ParamSpec("P")
@@ -29,10 +29,10 @@ R = TypeVar("R")
 def _of_node(method: Callable[Concatenate[Node, P], R]) -> Callable[Concatenate[AsyncNode, P], R]:
     """Return a method that calls this one on the node of rclpy underneath."""
 
-    @functools.wraps(method)
-    def call(self: AsyncNode, *args: P.args, **kwargs: P.kwargs) -> R:
-        return method(self._node, *args, **kwargs)
+    def call(self: AsyncNode, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        return method(self._node, *args, **kwargs)  # pyright: ignore[reportPrivateUsage]  # its own
 
+    functools.update_wrapper(call, method)
     return call
 
 
@@ -102,10 +102,10 @@ class AsyncNode:
         exc_type: type[BaseException] | None,
         exc_val: BaseException | None,
         exc_tb: TracebackType | None,
-    ) -> bool | None:
+    ) -> None:
         self.destroy_node()
         try:
-            return await self._driver.finish(exc_type, exc_val, exc_tb)
+            await self._driver.finish(exc_type, exc_val, exc_tb)
         finally:
             self._end()
 
@@ -121,7 +121,7 @@ class AsyncNode:
     def destroy_node(self) -> None:
         """Cancel all callbacks, calls and sleeps, and destroy the node; any thread, any number of times.
 
-        Goals that its action servers execute are ended, and their clients get the results, before the node goes.
+        Goals of its action servers are ended, and their clients get the results, before the node goes.
         """
         if not self._driver.in_loop():
             ring_later(self._driver.loop, self.destroy_node)
@@ -177,7 +177,8 @@ class AsyncNode:
         options: Any = {}
         if content_filter_options is not None:
             options = {"content_filter_options": content_filter_options}
-        entity = self._node.create_subscription(msg_type, topic, callback, qos_profile, raw=raw, **options)
+        subscribe: Any = self._node.create_subscription  # whose overloads tell raw messages apart
+        entity = subscribe(msg_type, topic, callback, qos_profile, raw=raw, **options)
         wrapper = AsyncSubscription(self._driver, entity, self._node.destroy_subscription, self._entities.pop)
         return self._keep(wrapper.start(concurrent=concurrent))
 
@@ -430,8 +431,6 @@ async def spin(node: Node) -> None:
         task.cancel()
     async_clock.destroy()
     node.executor = None
-    if not await driver.finish(type(error) if error else None, error, None) and error is not None:
+    await driver.finish(type(error) if error else None, error, None)
+    if error is not None:
         raise error
-
-
-__all__ = ["AsyncEntity", "AsyncNode", "spin"]

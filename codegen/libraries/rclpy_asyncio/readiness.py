@@ -23,13 +23,14 @@ from rclpy.service import Service
 from rclpy.signals import SignalHandlerGuardCondition
 from rclpy.subscription import Subscription
 
-_ADD = {
+_ADD: dict[Any, str] = {
     Subscription: "add_subscription",
     GuardCondition: "add_guard_condition",
     Client: "add_client",
     Service: "add_service",
 }
-_PLACES = tuple(_ADD)
+_PLACES: tuple[Any, ...] = tuple(_ADD)
+_rcl: Any = _rclpy
 RCLError = _rclpy.RCLError
 
 
@@ -92,6 +93,7 @@ class Sources(Protocol):
 
     def is_ready(self, waitable: Any) -> bool:
         """Ask a waitable whether it has something to take."""
+        ...
 
     async def until(self, is_true: Callable[[], bool], interval: float) -> None:
         """Wait until the graph makes something true; where nothing announces it, ask every `interval` [s]."""
@@ -245,7 +247,7 @@ class _WaitSet:
         """Wait until some of these are ready, or for the guard condition; return those that are."""
         with ExitStack() as uses:
             uses.enter_context(self._context.handle)
-            gone = []
+            gone: list[Any] = []
             for entity in armed:
                 try:
                     uses.enter_context(entity.handle if isinstance(entity, _PLACES) else entity)
@@ -253,7 +255,9 @@ class _WaitSet:
                     gone.append(entity)
             if gone:
                 return gone
-            places = {kind: [e for e in armed if isinstance(e, kind)] for kind in _PLACES}
+            places: dict[Any, list[Any]] = {
+                kind: [e for e in armed if isinstance(e, kind)] for kind in _PLACES
+            }
             others = [each for each in armed if not isinstance(each, _PLACES)]
             places[GuardCondition] += [self._guard, self._signal]
             counts = [len(each) for each in places.values()]
@@ -262,7 +266,7 @@ class _WaitSet:
                 numbers = waitable.get_num_entities()
                 for index, name in enumerate(_NUMBERS):
                     wanted[index] += getattr(numbers, name)
-            wait_set = _rclpy.WaitSet(*wanted, self._context.handle)
+            wait_set = _rcl.WaitSet(*wanted, self._context.handle)
             wait_set.clear_entities()
             for kind, entities in places.items():
                 for entity in entities:
@@ -292,7 +296,7 @@ def _ask(waitable: Any, context: rclpy.Context) -> bool:
     try:
         with waitable:
             numbers = waitable.get_num_entities()
-            wait_set = _rclpy.WaitSet(*(getattr(numbers, name) for name in _NUMBERS), context.handle)
+            wait_set = _rcl.WaitSet(*(getattr(numbers, name) for name in _NUMBERS), context.handle)
             wait_set.clear_entities()
             waitable.add_to_wait_set(wait_set)
             wait_set.wait(0)

@@ -9,15 +9,13 @@ from rclpy.impl.reexports import reexport
 from .events_executor import EventsExecutor
 
 if TYPE_CHECKING:
-    from rclpy_asyncio import (
-        AsyncClient,
-        AsyncClock,
-        AsyncNode,
-        AsyncPublisher,
-        AsyncService,
-        AsyncSubscription,
-        AsyncTimer,
-    )
+    from rclpy_asyncio import AsyncClient as AsyncClient
+    from rclpy_asyncio import AsyncClock as AsyncClock
+    from rclpy_asyncio import AsyncNode as AsyncNode
+    from rclpy_asyncio import AsyncPublisher as AsyncPublisher
+    from rclpy_asyncio import AsyncService as AsyncService
+    from rclpy_asyncio import AsyncSubscription as AsyncSubscription
+    from rclpy_asyncio import AsyncTimer as AsyncTimer
 else:
     __getattr__ = reexport(__name__)
 

@@ -1,4 +1,4 @@
-"""The node whose callbacks are coroutines of an event loop, as a module of its own. `rclpy_asyncio` has them."""
+"""The node whose callbacks are coroutines of an event loop. `rclpy_asyncio` has it."""
 
 from __future__ import annotations
 

@@ -393,14 +393,14 @@ async def test_a_callback_that_decides_later(name: str) -> None:
     async def execute(goal: Any) -> Any:
         return await (_forever if goal.request.order == 1 else _count)(goal)
 
-    async with _pair(name, execute, cancel_callback=decide, concurrent=True) as pair:
-        async with pair.client.goal(_goal(1)) as goal:
-            cancelling = asyncio.create_task(goal.cancel())
-            await asked.wait()
-            assert (await pair.client.send_goal(_goal(2))).status == GoalStatus.STATUS_SUCCEEDED
-            free.set()
-            assert (await cancelling).goals_canceling
-            assert (await goal.result()).status == GoalStatus.STATUS_CANCELED
+    paired = _pair(name, execute, cancel_callback=decide, concurrent=True)
+    async with paired as pair, pair.client.goal(_goal(1)) as goal:
+        cancelling = asyncio.create_task(goal.cancel())
+        await asked.wait()
+        assert (await pair.client.send_goal(_goal(2))).status == GoalStatus.STATUS_SUCCEEDED
+        free.set()
+        assert (await cancelling).goals_canceling
+        assert (await goal.result()).status == GoalStatus.STATUS_CANCELED
 
 
 @on_loop

@@ -6,9 +6,9 @@ import asyncio
 from typing import Any
 
 import pytest
+from rclpy.clock_type import ClockType
 from rclpy.parameter import Parameter
 from rclpy.time import Time
-from rclpy.clock_type import ClockType
 from rclpy_asyncio import AsyncClock, AsyncNode, TimeSourceChangedError
 from rosgraph_msgs.msg import Clock
 
