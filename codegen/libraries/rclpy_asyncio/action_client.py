@@ -15,7 +15,7 @@ from rclpy.action.client import ClientGoalHandle
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
-from rclpy_asyncio.driver import Driver, Port, take_waitable, wrap_future
+from rclpy_asyncio.driver import Driver, Port, follow, take_waitable, wrap_future
 
 
 class GoalRejectedError(RuntimeError):
@@ -140,7 +140,7 @@ class AsyncGoalHandle:
         self._is_ended = False
         self._handle: ClientGoalHandle[Any]
         self._result_future: Future[Any] | None = None
-        self._waiting: set[asyncio.Task[Any]] = set()  # for responses: destroying the client cancels them
+        self._waiting: set[asyncio.Future[Any]] = set()  # for responses: destroying the client cancels them
 
     @property
     def goal_id(self) -> Any:
@@ -185,7 +185,7 @@ class AsyncGoalHandle:
         :raises ServerGoneError: if the server leaves; only on the local transport, where that is known.
         """
         assert self._result_future is not None
-        return await self._answer(self._result_future, shared=True)
+        return await self._answer(self._result_future)
 
     async def cancel(self) -> CancelGoal.Response:
         """Ask for the goal to be cancelled, and return the response."""
@@ -214,12 +214,11 @@ class AsyncGoalHandle:
         self._driver.must_run(f"goal for {client._name}")
         client._goals[self] = None
         future = client._client.send_goal_async(self._goal, self._on_feedback, self._goal_uuid)
-        sending = self._driver.loop.create_task(self._answer(future))
         try:
-            self._handle = await asyncio.shield(sending)
+            self._handle = await self._answer(future)
         except asyncio.CancelledError:
-            if not sending.cancelled():
-                await self._leave(self._driver.spawn(self._abandon(sending)))
+            if not client._is_destroyed:
+                await self._leave(self._driver.spawn(self._abandon(future)))
             self.drop()
             raise
         if not self._handle.accepted:
@@ -238,8 +237,8 @@ class AsyncGoalHandle:
     def drop(self) -> None:
         """Wait for nothing any more."""
         self._client._goals.pop(self, None)
-        for task in list(self._waiting):
-            task.cancel()
+        for each in list(self._waiting):
+            each.cancel()
         self._is_ended = True
         self._news.set()
 
@@ -250,14 +249,14 @@ class AsyncGoalHandle:
             self._client._goals.pop(self, None)
             self._news.set()
 
-    async def _answer(self, future: Future[Any], *, shared: bool = False) -> Any:
+    async def _answer(self, future: Future[Any]) -> Any:
         """Await a response, unless the client is destroyed."""
-        task = asyncio.ensure_future(wrap_future(future, give_up=not shared))
-        self._waiting.add(task)
+        follower = follow(future)
+        self._waiting.add(follower)
         try:
-            return await task
+            return await follower
         finally:
-            self._waiting.discard(task)
+            self._waiting.discard(follower)
 
     async def _on_feedback(self, message: Any) -> None:
         self._feedback.append(message.feedback)
@@ -279,9 +278,9 @@ class AsyncGoalHandle:
         finally:
             gone.cancel()
 
-    async def _abandon(self, sending: asyncio.Task[ClientGoalHandle[Any]]) -> None:
+    async def _abandon(self, future: Future[ClientGoalHandle[Any]]) -> None:
         """Cancel a goal that nobody wants any more, once the server has accepted it."""
-        handle = await sending
+        handle = await wrap_future(future)
         if handle.accepted:
             await wrap_future(handle.cancel_goal_async())
 

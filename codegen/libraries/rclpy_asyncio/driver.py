@@ -92,12 +92,11 @@ class Port:
 
     async def _work(self, item: Any, bell: Bell, in_a_row: int) -> None:
         remaining = self._run(item)
-        if remaining is None:
-            if in_a_row % _BURST == 0:
-                await asyncio.sleep(0)
-        elif self._limit == 1:
+        if remaining is not None and self._limit == 1:
             await remaining
-        else:
+        if in_a_row % _BURST == 0:
+            await asyncio.sleep(0)
+        if remaining is not None and self._limit > 1:
             task = self._driver.spawn(remaining)
             self._tasks.add(task)
 
@@ -333,24 +332,29 @@ async def wrap_future(future: Future[T], *, give_up: bool = True) -> T:
 
     :param give_up: whether cancelling this cancels the future, too.
     """
-    waiter: asyncio.Future[T] = asyncio.get_running_loop().create_future()
-
-    def settle(future: Future[T]) -> None:
-        if waiter.done():  # the caller was cancelled in this turn of the loop
-            return
-        error = future.exception()
-        if error is not None:
-            waiter.set_exception(error)
-        else:
-            waiter.set_result(future.result())
-
-    future.add_done_callback(settle)
     try:
-        return await waiter
+        return await follow(future)
     except asyncio.CancelledError:
         if give_up:
             future.cancel()
         raise
+
+
+def follow(future: Future[T]) -> asyncio.Future[T]:
+    """Return a future of asyncio that ends as this one of rclpy does, which the loop's thread completes."""
+    follower: asyncio.Future[T] = asyncio.get_running_loop().create_future()
+
+    def settle(future: Future[T]) -> None:
+        if follower.done():  # who waited was cancelled in this turn of the loop
+            return
+        error = future.exception()
+        if error is not None:
+            follower.set_exception(error)
+        else:
+            follower.set_result(future.result())
+
+    future.add_done_callback(settle)
+    return follower
 
 
 # How to take from each kind, and what to do with what was taken

@@ -17,10 +17,10 @@ from rclpy_asyncio.driver import (
     MOST_AT_ONCE,
     Driver,
     Port,
+    follow,
     take_message,
     take_request,
     take_response,
-    wrap_future,
 )
 
 EntityT = TypeVar("EntityT", bound="Publisher[Any] | Subscription[Any] | Service[Any] | Client[Any]")
@@ -129,7 +129,7 @@ class AsyncClient(AsyncEntity["Client[Any]"]):
 
     def start(self) -> AsyncClient:
         """Take responses as soon as the node runs."""
-        self._calls: set[asyncio.Task[Any]] = set()
+        self._calls: set[asyncio.Future[Any]] = set()
         self._serve_by(*take_response(self._driver, self._entity))
         return self
 
@@ -164,7 +164,7 @@ class AsyncClient(AsyncEntity["Client[Any]"]):
             raise RuntimeError("Calling a destroyed client is forbidden")
         self._driver.must_run(f"call of {self.service_name}")
         future = self._entity.call_async(request)
-        waiting = asyncio.ensure_future(wrap_future(future))
+        waiting = follow(future)
         self._calls.add(waiting)
         try:
             return await waiting

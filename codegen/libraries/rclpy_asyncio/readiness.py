@@ -116,6 +116,7 @@ class _Listeners:
         self._node = node
         self._loop = loop
         self._attached: dict[Any, tuple[Bell, tuple[Any, ...]]] = {}
+        self._timed: dict[Any, list[Any]] = {}  # the handles that may become ready by themselves
         self._alarms: dict[Any, asyncio.TimerHandle] = {}
         self._signal = SignalHandlerGuardCondition(node.context)
         # A signal handler interrupts the loop's own thread, so that the selector has to be woken.
@@ -126,6 +127,8 @@ class _Listeners:
     def attach(self, entity: Any, bell: Bell) -> None:
         handles = (entity.handle,) if isinstance(entity, _PLACES) else tuple(entity._fixed_handles)
         self._attached[entity] = bell, handles
+        if timed := [handle for handle in handles if handle.is_timed()]:
+            self._timed[entity] = timed
         for handle in handles:
             handle.add_listener(bell.ring)
 
@@ -133,18 +136,18 @@ class _Listeners:
         bell, handles = self._attached.pop(entity, (None, ()))
         for handle in handles:
             handle.remove_listener(bell.ring if bell else None)
+        self._timed.pop(entity, None)
         if (alarm := self._alarms.pop(entity, None)) is not None:
             alarm.cancel()
 
     def arm(self, entity: Any) -> None:
-        bell, handles = self._attached[entity]
-        if isinstance(entity, _PLACES):
+        if not self._timed or (timed := self._timed.get(entity)) is None:
             return
         if (alarm := self._alarms.pop(entity, None)) is not None:
             alarm.cancel()
-        times = [at for handle in handles if handle.is_timed() and (at := handle.wake_at()) is not None]
+        times = [at for handle in timed if (at := handle.wake_at()) is not None]
         if times:  # a goal expires
-            self._alarms[entity] = self._loop.call_at(min(times) / 1e9, bell.ring)
+            self._alarms[entity] = self._loop.call_at(min(times) / 1e9, self._attached[entity][0].ring)
 
     def is_ready(self, waitable: Any) -> bool:
         if not waitable._fixed_handles:

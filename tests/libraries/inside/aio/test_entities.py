@@ -179,6 +179,28 @@ async def test_asyncio_and_anyio_in_callbacks(name: str) -> None:
     assert done == ["gather", "gather", "group", "anyio", "end"]
 
 
+@pytest.mark.parametrize("plain", [True, False])
+@on_loop
+async def test_callbacks_that_never_wait(name: str, plain: bool) -> None:
+    """Each publishes the next message; the loop gets its turn all the same."""
+    ended = False
+
+    def chain(message: Any) -> None:
+        if not ended:
+            publisher.publish(message)
+
+    async def chain_later(message: Any) -> None:
+        chain(message)
+
+    async with AsyncNode(name) as node:
+        publisher = node.create_publisher(String, name, 10)
+        subscription = node.create_subscription(String, name, chain if plain else chain_later, 10)
+        await met(publisher, subscription)
+        publisher.publish(String())
+        await turns()
+        ended = True
+
+
 @on_loop
 async def test_a_destroyed_publisher(name: str) -> None:
     """`publish` raises InvalidHandle, which is a RuntimeError."""
