@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import functools
 import inspect
 import threading
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Generator
 from types import TracebackType
 from typing import Any, TypeVar
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
 from rclpy.client import Client
 from rclpy.exceptions import InvalidHandle
+from rclpy.guard_condition import GuardCondition
 from rclpy.node import Node
 from rclpy.service import Service
 from rclpy.subscription import Subscription
@@ -112,10 +114,20 @@ class Driver:
 
     Entities that have a coroutine function of their own (`serve`) run by it, in the order in which they were
     made. The others (services of parameters, the subscription of /clock, QoS events) run as usual.
+
+    :param serve_timer: runs a timer that has a callback of rclpy.
+    :param bridges: whether callbacks that run as usual may await futures of rclpy.
     """
 
-    def __init__(self, node: Node, serve_timer: Callable[[Driver, Timer], Coroutine[Any, Any, None]]) -> None:
+    def __init__(
+        self,
+        node: Node,
+        serve_timer: Callable[[Driver, Timer], Coroutine[Any, Any, None]],
+        *,
+        bridges: bool = False,
+    ) -> None:
         self.node = node
+        self._bridges = bridges
         self.loop: asyncio.AbstractEventLoop
         self.sources: Sources
         self.is_running = False
@@ -160,8 +172,9 @@ class Driver:
 
         These end by themselves, also after `stop`, so that clients hear of the end.
         """
-        coroutine: Any = callback if isinstance(callback, Coroutine) else _call(callback, args)
-        task = self.loop.create_task(coroutine)
+        given: Any = callback
+        coroutine = given if inspect.iscoroutine(given) else _call(given, args)
+        task = self.loop.create_task(_bridged(coroutine) if self._bridges else coroutine)
         self.goals.add(task)
         task.add_done_callback(self.goals.discard)
         return task
@@ -295,7 +308,13 @@ class Driver:
             if isinstance(entity, kind):
                 make = ports
         take, run = make(self, entity)
-        await Port(self, entity, take, run, limit=limit, lock=lock).serve()
+
+        def bridged(item: Any) -> Unfinished:
+            later = run(item)
+            return None if later is None else _bridged(later)
+
+        port = Port(self, entity, take, bridged if self._bridges else run, limit=limit, lock=lock)
+        await port.serve()
 
 
 async def _call(callback: Callable[..., Any], args: tuple[Any, ...]) -> Any:
@@ -341,10 +360,15 @@ async def wrap_future(future: Future[T], *, give_up: bool = True) -> T:
 
 
 def follow(future: Future[T]) -> asyncio.Future[T]:
-    """Return a future of asyncio that ends as this one of rclpy does, which the loop's thread completes."""
+    """Return a future of asyncio that ends as this one of rclpy does, whoever completes that."""
     follower: asyncio.Future[T] = asyncio.get_running_loop().create_future()
 
+    loop, thread = follower.get_loop(), threading.get_ident()
+
     def settle(future: Future[T]) -> None:
+        if threading.get_ident() != thread:
+            ring_later(loop, functools.partial(settle, future))
+            return
         if follower.done():  # who waited was cancelled in this turn of the loop
             return
         error = future.exception()
@@ -355,6 +379,38 @@ def follow(future: Future[T]) -> asyncio.Future[T]:
 
     future.add_done_callback(settle)
     return follower
+
+
+async def _bridged(coroutine: Coroutine[Any, Any, Any]) -> Any:
+    """Run a coroutine that awaits futures of rclpy besides those of asyncio."""
+    return await _Bridge(coroutine)
+
+
+class _Bridge:
+    """Steps a coroutine, and waits for the futures of rclpy that it yields."""
+
+    def __init__(self, coroutine: Coroutine[Any, Any, Any]) -> None:
+        self._coroutine = coroutine
+
+    def __await__(self) -> Generator[Any, Any, Any]:
+        error: BaseException | None = None
+        while True:
+            try:
+                awaited = self._coroutine.send(None) if error is None else self._coroutine.throw(error)
+            except StopIteration as end:
+                return end.value
+            error = None
+            try:
+                if isinstance(awaited, Future):
+                    follower: asyncio.Future[Any] = follow(awaited)
+                    # The coroutine itself asks for the result.
+                    yield from asyncio.wait((follower,)).__await__()
+                    if not follower.cancelled():
+                        follower.exception()
+                else:
+                    yield awaited
+            except BaseException as raised:
+                error = raised
 
 
 # How to take from each kind, and what to do with what was taken
@@ -456,4 +512,21 @@ def take_waitable(driver: Driver, entity: Any, idle: Callable[[], None] | None =
     return take, run
 
 
-_PORTS: dict[type, Any] = {Subscription: take_message, Service: take_request, Client: take_response}
+def _take_trigger(driver: Driver, entity: GuardCondition) -> Working:
+    """Return how to take the trigger of a guard condition, and how to call back."""
+
+    def take() -> Any:
+        return driver.sources.is_ready(entity) or None
+
+    def run(taken: Any) -> Unfinished:
+        return remaining(entity.callback() if entity.callback is not None else None)
+
+    return take, run
+
+
+_PORTS: dict[type, Any] = {
+    Subscription: take_message,
+    Service: take_request,
+    Client: take_response,
+    GuardCondition: _take_trigger,
+}

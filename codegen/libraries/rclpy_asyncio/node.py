@@ -408,8 +408,8 @@ async def _serve_timer(clock: AsyncClock, driver: Driver, timer: Timer) -> None:
 async def spin(node: Node) -> None:
     """Run an ordinary node on the event loop, until the task is cancelled or the context is shut down.
 
-    Its `async def` callbacks are tasks of the loop, so that everything of asyncio works in them. Callback
-    groups count. Futures of rclpy are awaited by `rclpy_asyncio.wrap_future`.
+    Its `async def` callbacks run on the loop, so that everything of asyncio works in them besides futures of
+    rclpy. Callback groups count. The node has no executor meanwhile, and may be given to one afterwards.
 
     :raises ExceptionGroup: with the exception of a callback.
     """
@@ -418,7 +418,7 @@ async def spin(node: Node) -> None:
     if executor is not None:
         executor.remove_node(node)
     async_clock = AsyncClock(clock)
-    driver = Driver(node, functools.partial(_serve_timer, async_clock))
+    driver = Driver(node, functools.partial(_serve_timer, async_clock), bridges=True)
     node.context.on_shutdown(driver.stop)
     await driver.start()
     error: BaseException | None = None

@@ -92,7 +92,7 @@ class Sources(Protocol):
         """Ring once it is ready: its coroutine has found nothing and is going to wait."""
 
     def is_ready(self, waitable: Any) -> bool:
-        """Ask a waitable whether it has something to take."""
+        """Ask a waitable whether it has something to take, a guard condition whether it was triggered."""
         ...
 
     async def until(self, is_true: Callable[[], bool], interval: float) -> None:
@@ -125,12 +125,20 @@ class _Listeners:
         )
 
     def attach(self, entity: Any, bell: Bell) -> None:
-        handles = (entity.handle,) if isinstance(entity, _PLACES) else tuple(entity._fixed_handles)
+        handles = (entity.handle,) if isinstance(entity, _PLACES) else self._handles_of(entity)
         self._attached[entity] = bell, handles
         if timed := [handle for handle in handles if handle.is_timed()]:
             self._timed[entity] = timed
         for handle in handles:
             handle.add_listener(bell.ring)
+
+    def _handles_of(self, waitable: Any) -> tuple[Any, ...]:
+        if waitable._fixed_handles:
+            return tuple(waitable._fixed_handles)
+        with waitable:  # a program has written it: only it knows
+            wait_set = _rcl.WaitSet(*_numbers_of(waitable), self._node.context.handle)
+            waitable.add_to_wait_set(wait_set)
+            return tuple(wait_set.entities())
 
     def detach(self, entity: Any) -> None:
         bell, handles = self._attached.pop(entity, (None, ()))
@@ -150,6 +158,9 @@ class _Listeners:
             self._alarms[entity] = self._loop.call_at(min(times) / 1e9, self._attached[entity][0].ring)
 
     def is_ready(self, waitable: Any) -> bool:
+        if isinstance(waitable, GuardCondition):
+            handle: Any = waitable.handle
+            return bool(handle.take())
         if not waitable._fixed_handles:
             return _ask(waitable, self._node.context)
         ready: bool = waitable._find_ready()
@@ -186,6 +197,7 @@ class _WaitSet:
         self._end = end
         self._bells: dict[Any, Bell] = {}
         self._armed: dict[Any, Bell] = {}
+        self._triggered: set[Any] = set()  # guard conditions: the wait takes their trigger
         self._lock = threading.Lock()  # guards what is armed and whether this is closed
         self._is_closed = False
         self._guard = GuardCondition(None, None, context=node.context)
@@ -209,6 +221,10 @@ class _WaitSet:
         self._guard.trigger()
 
     def is_ready(self, waitable: Any) -> bool:
+        if isinstance(waitable, GuardCondition):
+            is_triggered = waitable in self._triggered
+            self._triggered.discard(waitable)
+            return is_triggered
         return _ask(waitable, self._context)
 
     async def until(self, is_true: Callable[[], bool], interval: float) -> None:
@@ -243,6 +259,7 @@ class _WaitSet:
             with self._lock:
                 for entity in ready:
                     self._armed.pop(entity, None)
+            self._triggered.update(each for each in ready if isinstance(each, GuardCondition))
             for entity in ready:
                 armed[entity].ring()
 
@@ -266,9 +283,7 @@ class _WaitSet:
             counts = [len(each) for each in places.values()]
             wanted = [counts[0], counts[1], 0, counts[2], counts[3], 0]
             for waitable in others:
-                numbers = waitable.get_num_entities()
-                for index, name in enumerate(_NUMBERS):
-                    wanted[index] += getattr(numbers, name)
+                wanted = [sum(each) for each in zip(wanted, _numbers_of(waitable), strict=True)]
             wait_set = _rcl.WaitSet(*wanted, self._context.handle)
             wait_set.clear_entities()
             for kind, entities in places.items():
@@ -294,12 +309,16 @@ _NUMBERS = (
 )
 
 
+def _numbers_of(waitable: Any) -> list[int]:
+    numbers = waitable.get_num_entities()
+    return [getattr(numbers, name) for name in _NUMBERS]
+
+
 def _ask(waitable: Any, context: rclpy.Context) -> bool:
     """Ask a waitable by a wait set of its own, without waiting."""
     try:
         with waitable:
-            numbers = waitable.get_num_entities()
-            wait_set = _rcl.WaitSet(*(getattr(numbers, name) for name in _NUMBERS), context.handle)
+            wait_set = _rcl.WaitSet(*_numbers_of(waitable), context.handle)
             wait_set.clear_entities()
             waitable.add_to_wait_set(wait_set)
             wait_set.wait(0)
