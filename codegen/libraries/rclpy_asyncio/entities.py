@@ -1,4 +1,4 @@
-"""What an AsyncNode makes for topics and services."""
+"""Publishers, subscriptions, services and clients of an AsyncNode."""
 
 from __future__ import annotations
 

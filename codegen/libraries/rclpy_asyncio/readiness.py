@@ -7,7 +7,6 @@ for each running node waits in a wait set for what the node's coroutines want, a
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -75,8 +74,10 @@ class Bell:
 
 def ring_later(loop: asyncio.AbstractEventLoop, callback: Callable[[], object]) -> None:
     """Call back in the loop's thread, unless the loop is closed: then nobody waits any more."""
-    with contextlib.suppress(RuntimeError):
+    try:  # noqa: SIM105 - suppress() takes a tenth of the time of waking a loop
         loop.call_soon_threadsafe(callback)
+    except RuntimeError:
+        pass
 
 
 class Sources(Protocol):

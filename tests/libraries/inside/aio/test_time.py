@@ -301,3 +301,16 @@ async def test_a_timer_in_simulated_time(name: str) -> None:
         await eventually(lambda: calls)
         await turns(3)
     assert len(calls) == 1
+
+
+def test_virtual_time(virtual_time: Any, name: str) -> None:
+    """The loop waits as everything else does there: a minute and a half take no time."""
+    calls: list[None] = []
+
+    async def run() -> None:
+        async with AsyncNode(name) as node:
+            node.create_timer(10.0, lambda: calls.append(None))
+            await node.get_clock().sleep(95)
+
+    asyncio.run(run())
+    assert len(calls) == 9
