@@ -9,9 +9,10 @@ from functools import partial
 from typing import Any
 
 import rclpy.timer
-from rclpy.clock import ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
+from rclpy.clock import Clock, ClockChange, JumpHandle, JumpThreshold, ROSClock, TimeJump
 from rclpy.clock_type import ClockType
 from rclpy.duration import Duration
+from rclpy.exceptions import InvalidHandle
 from rclpy.time import Time
 
 from rclpy_asyncio.driver import Driver, remaining, takes
@@ -43,8 +44,8 @@ class AsyncClock:
     :param clock: what tells the time; None for a ROS clock of its own.
     """
 
-    def __init__(self, clock: ROSClock | None = None) -> None:
-        self._clock = ROSClock() if clock is None else clock
+    def __init__(self, clock: Clock | None = None) -> None:
+        self._clock: Any = ROSClock() if clock is None else clock
         self._jumps: JumpHandle | None = None
         self._sleepers: dict[_Sleeper, None] = {}  # a set with order
         self._bells: set[Bell] = set()
@@ -53,7 +54,8 @@ class AsyncClock:
     @property
     def clock_type(self) -> ClockType:
         """The kind of time."""
-        return self._clock.clock_type
+        kind: ClockType = self._clock.clock_type
+        return kind
 
     @property
     def handle(self) -> Any:
@@ -63,11 +65,12 @@ class AsyncClock:
     @property
     def ros_time_is_active(self) -> bool:
         """Whether it shows simulated time."""
-        return self._clock.ros_time_is_active
+        return isinstance(self._clock, ROSClock) and self._clock.ros_time_is_active
 
     def now(self) -> Time:
         """Read it."""
-        return self._clock.now()
+        now: Time = self._clock.now()
+        return now
 
     def set_ros_time_override(self, time: Time) -> None:
         """Tell it the time that it shows while simulated time is on."""
@@ -81,9 +84,10 @@ class AsyncClock:
         post_callback: Callable[[TimeJump], None] | None = None,
     ) -> JumpHandle:
         """Have callbacks called around jumps, on the thread that makes the jump."""
-        return self._clock.create_jump_callback(
+        handle: JumpHandle = self._clock.create_jump_callback(
             threshold, pre_callback=pre_callback, post_callback=post_callback
         )
+        return handle
 
     async def sleep(self, duration_sec: float) -> None:
         """Sleep for a time [s] of this clock; zero or less: one turn of the loop.
@@ -135,7 +139,7 @@ class AsyncClock:
         self._bells.discard(bell)
 
     def _hear_jumps(self) -> None:
-        if self._jumps is None and not self._is_destroyed:
+        if self._jumps is None and not self._is_destroyed and isinstance(self._clock, ROSClock):
             nanosecond = Duration(nanoseconds=1)
             threshold = JumpThreshold(min_forward=nanosecond, min_backward=Duration(nanoseconds=-1))
             self._jumps = self._clock.create_jump_callback(threshold, post_callback=self._on_jump)
@@ -299,5 +303,16 @@ async def run_timer(
             finally:
                 if alarm is not None:
                     alarm.cancel()
+    except InvalidHandle:
+        if not _is_destroyed(timer):
+            raise  # of something that the callback has used
     finally:
         clock.ring_no_more(bell)
+
+
+def _is_destroyed(timer: rclpy.timer.Timer) -> bool:
+    try:
+        timer.is_canceled()
+    except InvalidHandle:
+        return True
+    return False

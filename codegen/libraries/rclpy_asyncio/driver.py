@@ -82,15 +82,20 @@ class Port:
                     sources.arm(self._entity)
                 in_a_row = 0
                 await bell.wait()
-        except InvalidHandle:
-            pass
-        except RCLError:
-            if self._entity.handle.pointer:
-                raise
+        except (InvalidHandle, RCLError):
+            if not self._is_destroyed():
+                raise  # of something that the callback has used
         finally:
             sources.detach(self._entity)
             for task in self._tasks:
                 task.cancel()
+
+    def _is_destroyed(self) -> bool:
+        try:
+            with getattr(self._entity, "handle", self._entity):
+                return False
+        except InvalidHandle:
+            return True
 
     async def _work(self, item: Any, bell: Bell, in_a_row: int) -> None:
         remaining = self._run(item)

@@ -402,6 +402,8 @@ def _nothing() -> None:
 async def _serve_timer(clock: AsyncClock, driver: Driver, timer: Timer) -> None:
     """Run a timer that has a callback of rclpy."""
     callback: Any = timer.callback
+    if timer.clock is not driver.node.get_clock():
+        clock = AsyncClock(timer.clock)
     await run_timer(timer, clock, Bell(driver.loop), lambda due: callback())
 
 

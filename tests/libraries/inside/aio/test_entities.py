@@ -214,6 +214,26 @@ async def test_a_destroyed_publisher(name: str) -> None:
 
 
 @on_loop
+async def test_a_callback_that_uses_what_is_destroyed(name: str) -> None:
+    """Its InvalidHandle ends the node as any other exception does."""
+    node = AsyncNode(name)
+    gone = node.create_publisher(String, name, 1)
+    gone.destroy()
+    publisher = node.create_publisher(String, name, 1)
+    subscription = node.create_subscription(String, name, gone.publish, 1)
+
+    async def publish() -> None:
+        await met(publisher, subscription)
+        publisher.publish(String())
+
+    publishing = asyncio.create_task(publish())
+    with pytest.raises(ExceptionGroup) as caught:
+        await node.run()
+    await publishing
+    assert caught.group_contains(InvalidHandle)
+
+
+@on_loop
 async def test_publishing_without_running(name: str) -> None:
     """A node that was never entered publishes."""
     got: list[Any] = []

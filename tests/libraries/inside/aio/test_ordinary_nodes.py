@@ -6,18 +6,20 @@ import asyncio
 import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
 import rclpy
 from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
+from humanoid_interfaces.srv import FollowPath, PlanFootsteps
 from rclpy.action import ActionClient, ActionServer
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.task import Future
-from rclpy_asyncio import spin, wrap_future
+from rclpy_asyncio import AsyncNode, spin, wrap_future
 from std_msgs.msg import Int32
 
 from tests.libraries.inside.aio.conftest import eventually, on_loop, turns
@@ -190,3 +192,43 @@ async def test_futures_of_other_threads(name: str, fails: bool) -> None:
             await wrap_future(future)
     else:
         assert await wrap_future(future) == 5
+
+
+def _planner() -> Any:
+    """A node of a generated package, of the style `asyncio`."""
+    from footstep_planner._footstep_planner_base import FootstepPlannerBase
+
+    class Planner(FootstepPlannerBase):
+        async def on_teleop_velocity(self, message: Any) -> None:
+            pass
+
+        async def on_map(self, message: Any) -> None:
+            pass
+
+        async def on_gait_state(self, message: Any) -> None:
+            pass
+
+        async def handle_follow_path(self, request: Any, response: Any) -> Any:
+            await asyncio.gather(asyncio.sleep(0.001), asyncio.sleep(0.001))
+            await self.sleep(0.01)
+            planned = await self.call_plan_footsteps(PlanFootsteps.Request())
+            response.message = f"planned: {planned.message}"
+            return response
+
+    return Planner()
+
+
+@on_loop
+async def test_generated_nodes(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """Both asyncio and the methods that the base class has work in their callbacks."""
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[4] / "generated/footstep_planner"))
+
+    def plan(request: Any, response: Any) -> Any:
+        response.message = "no"
+        return response
+
+    async with AsyncNode(name) as node, _spinning(_planner()):
+        node.create_service(PlanFootsteps, "/plan_footsteps", plan)
+        client = node.create_client(FollowPath, "/follow_path")
+        await client.wait_for_service()
+        assert (await client.call(FollowPath.Request())).message == "planned: no"

@@ -303,7 +303,7 @@ async def test_a_timer_in_simulated_time(name: str) -> None:
     assert len(calls) == 1
 
 
-def test_virtual_time(virtual_time: Any, name: str) -> None:
+def test_virtual_time(ros_virtual_clock: Any, name: str) -> None:
     """The loop waits as everything else does there: a minute and a half take no time."""
     calls: list[None] = []
 
