@@ -101,9 +101,7 @@ class Port:
         remaining = self._run(item)
         if remaining is not None and self._limit == 1:
             await remaining
-        if in_a_row % _BURST == 0:
-            await asyncio.sleep(0)
-        if remaining is not None and self._limit > 1:
+        elif remaining is not None:
             task = self._driver.spawn(remaining)
             self._tasks.add(task)
 
@@ -112,6 +110,8 @@ class Port:
                 bell.ring()
 
             task.add_done_callback(forget)
+        if in_a_row % _BURST == 0:
+            await asyncio.sleep(0)
 
 
 class Driver:
@@ -207,7 +207,7 @@ class Driver:
         self._group = asyncio.TaskGroup()
         await self._group.__aenter__()
         self._ended = self.loop.create_future()
-        self.sources = make_sources(self.node, self.loop, self.on_shutdown)
+        self.sources = make_sources(self.node, self.loop, self.on_shutdown, self.fail)
         self.is_running = True
         self._scan()
 
@@ -406,8 +406,8 @@ class _Bridge:
                 return end.value
             error = None
             try:
-                if isinstance(awaited, Future):
-                    follower: asyncio.Future[Any] = follow(awaited)
+                if _is_of_rclpy(awaited):
+                    follower = follow(awaited)
                     # The coroutine itself asks for the result.
                     yield from asyncio.wait((follower,)).__await__()
                     if not follower.cancelled():
@@ -416,6 +416,10 @@ class _Bridge:
                     yield awaited
             except BaseException as raised:
                 error = raised
+
+
+def _is_of_rclpy(awaited: object) -> bool:
+    return isinstance(awaited, Future)
 
 
 # How to take from each kind, and what to do with what was taken

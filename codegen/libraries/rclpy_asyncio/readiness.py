@@ -10,6 +10,7 @@ import asyncio
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from typing import Any, Protocol
 
 import rclpy
@@ -103,11 +104,20 @@ class Sources(Protocol):
         """Watch nothing any more."""
 
 
-def make_sources(node: Node, loop: asyncio.AbstractEventLoop, end: Callable[[], object]) -> Sources:
-    """Return what this rclpy offers; `end` is called in the loop when a signal has ended the context."""
+def make_sources(
+    node: Node,
+    loop: asyncio.AbstractEventLoop,
+    end: Callable[[], object],
+    fail: Callable[[Exception], object],
+) -> Sources:
+    """Return what this rclpy offers.
+
+    :param end: is called in the loop when a signal has ended the context.
+    :param fail: is called in the loop if nothing can be waited for any more.
+    """
     if hasattr(node.handle, "graph_node"):
         return _Listeners(node, loop, end)
-    return _WaitSet(node, loop, end)
+    return _WaitSet(node, loop, end, fail)
 
 
 class _Listeners:
@@ -190,12 +200,19 @@ class _Listeners:
 class _WaitSet:
     """A thread waits in a wait set of real rclpy, and a guard condition tells it of changes."""
 
-    def __init__(self, node: Node, loop: asyncio.AbstractEventLoop, end: Callable[[], object]) -> None:
+    def __init__(
+        self,
+        node: Node,
+        loop: asyncio.AbstractEventLoop,
+        end: Callable[[], object],
+        fail: Callable[[Exception], object],
+    ) -> None:
         self._context = node.context
         # Asked by the thread: the context itself holds a lock while its shutdown waits for the thread.
         self._handle = node.context.handle
         self._loop = loop
         self._end = end
+        self._fail = fail
         self._bells: dict[Any, Bell] = {}
         self._armed: dict[Any, Bell] = {}
         self._triggered: set[Any] = set()  # guard conditions: the wait takes their trigger
@@ -250,9 +267,10 @@ class _WaitSet:
                 armed = dict(self._armed)
             try:
                 ready = self._wait(list(armed))
-            except RuntimeError:
+            except RuntimeError as error:
                 if self._handle.ok():
-                    raise
+                    ring_later(self._loop, partial(self._fail, error))
+                    return
                 ready = []
             if not self._handle.ok():
                 ring_later(self._loop, self._end)

@@ -88,6 +88,7 @@ API: Final[dict[str, Api]] = {
     "feedback_filter": Api(_LYRICAL, "ActionClient(enable_feedback_msg_optimization=)"),
     "buffer_backends": Api(_LYRICAL, "create_subscription(acceptable_buffer_backends=)"),
     "executing": Api(_LYRICAL, "ServerGoalHandle.executing()"),
+    "asyncio": Api(_LYRICAL, "rclpy.experimental.AsyncNode and what it makes"),
 }
 """By the name that `uses` gets."""
 
