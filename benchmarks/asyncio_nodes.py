@@ -111,8 +111,13 @@ def run(function):
         executor.spin_until_future_complete(executor.create_task(function, count))
     return work
 
-WORK = {"message": (messages, 20000), "across threads": (far, 3000), "call": (run(calls), 3000), "goal": (run(goals), 400)}
-for name, (work, count) in WORK.items():
+WORK = (
+    ("message", messages, 20000),
+    ("across threads", far, 3000),
+    ("call", run(calls), 3000),
+    ("goal", run(goals), 400),
+)
+for name, work, count in WORK:
     work(count // 10)
     begin = time.process_time()
     work(count)
@@ -172,8 +177,13 @@ async def main():
                     taken.acquire()
             await asyncio.to_thread(publish)
 
-        work = {"message": (messages, 20000), "across threads": (far, 3000), "call": (calls, 3000), "goal": (goals, 400)}
-        for name, (work, count) in work.items():
+        all_work = (
+            ("message", messages, 20000),
+            ("across threads", far, 3000),
+            ("call", calls, 3000),
+            ("goal", goals, 400),
+        )
+        for name, work, count in all_work:
             await work(count // 10)
             begin = time.process_time()
             await work(count)

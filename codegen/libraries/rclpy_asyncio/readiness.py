@@ -62,11 +62,12 @@ class Bell:
         """Forget what has rung."""
         self._is_rung = False
 
-    async def wait(self) -> None:
-        """Wait until it rings, or return at once if it has rung since it was cleared."""
-        if not self._is_rung:
-            self._waiter = self._loop.create_future()
-            await self._waiter
+    def wait(self) -> asyncio.Future[None]:
+        """Return what to await: it ends when the bell rings, or at once if it has rung since it was cleared."""
+        self._waiter = waiter = self._loop.create_future()
+        if self._is_rung:
+            waiter.set_result(None)
+        return waiter
 
     def _wake(self) -> None:
         if self._waiter is not None and not self._waiter.done():
