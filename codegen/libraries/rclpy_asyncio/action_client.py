@@ -48,8 +48,9 @@ class AsyncActionClient:
         self._on_destroy = on_destroy
         self._is_destroyed = False
         self._goals: dict[AsyncGoalHandle, None] = {}  # those that have not ended; a set with order
-        port = Port(driver, self._client, *take_waitable(driver, self._client, self._end_feedback))
-        driver.serve(self._client, port.serve)
+        self._results: deque[Any] = deque()  # responses that wait until all feedback is taken
+        self._take_ready, run = take_waitable(driver, self._client)
+        driver.serve(self._client, Port(driver, self._client, self._take, run).serve)
 
     def server_is_ready(self) -> bool:
         """Return whether a server is there, with all of its services and topics."""
@@ -114,10 +115,18 @@ class AsyncActionClient:
         self._on_destroy(self)
         self._client.destroy()
 
-    def _end_feedback(self) -> None:
-        """End the feedback of goals that have ended, now that all of it is taken."""
+    def _take(self) -> Any:
+        """Take what is ready, and results last: rclpy drops the feedback that it takes after a result."""
+        taken = self._take_ready()
+        if taken is not None:
+            if (result := taken[0].pop("result", None)) is not None:
+                self._results.append(result)
+            return taken
+        if self._results:
+            return ({"result": self._results.popleft()},)
         for handle in list(self._goals):
             handle.end_feedback()
+        return None
 
 
 class AsyncGoalHandle:

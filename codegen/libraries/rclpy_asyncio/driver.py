@@ -504,15 +504,11 @@ def take_response(driver: Driver, entity: Client[Any]) -> Working:
     return take, run
 
 
-def take_waitable(driver: Driver, entity: Any, idle: Callable[[], None] | None = None) -> Working:
-    """Return how to take the data of a waitable, and how to execute it; `idle` is called before each wait."""
+def take_waitable(driver: Driver, entity: Any) -> Working:
+    """Return how to take the data of a waitable, in a tuple because None is data, and how to execute it."""
 
     def take() -> Any:
-        if driver.sources.is_ready(entity):
-            return (entity.take_data(),)
-        if idle is not None:
-            idle()
-        return None
+        return (entity.take_data(),) if driver.sources.is_ready(entity) else None
 
     def run(taken: Any) -> Unfinished:
         begun: Unfinished = entity.execute(taken[0])

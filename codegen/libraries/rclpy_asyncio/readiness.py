@@ -63,7 +63,7 @@ class Bell:
         self._is_rung = False
 
     def wait(self) -> asyncio.Future[None]:
-        """Return what to await: it ends when the bell rings, or at once if it has rung since it was cleared."""
+        """Return what to await: the next ring, or nothing if it has rung since it was cleared."""
         self._waiter = waiter = self._loop.create_future()
         if self._is_rung:
             waiter.set_result(None)

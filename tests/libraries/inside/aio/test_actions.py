@@ -115,6 +115,22 @@ async def test_a_callback_for_feedback(name: str) -> None:
 
 
 @on_loop
+async def test_feedback_that_comes_with_the_result(name: str) -> None:
+    """None of it is lost when the client has no time until the goal has ended."""
+
+    async def execute(goal: Any) -> Any:
+        for number in range(5):
+            goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))
+        goal.succeed()
+        return _result()
+
+    async with _pair(name, execute) as pair:
+        for _ in range(5):
+            async with pair.client.goal(_goal()) as goal:
+                assert [each.sequence[0] async for each in goal.feedback()] == [0, 1, 2, 3, 4]
+
+
+@on_loop
 async def test_slow_readers_miss_the_oldest_feedback(name: str) -> None:
     """No more is kept than the depth of the QoS."""
     async with _pair(name, _count, depth=3) as pair, pair.client.goal(_goal(8)) as goal:
