@@ -62,7 +62,7 @@ test-slow: $(VENV)/.test  ## run the tests that take longer
 test-kilted:  ## run the tests of real rclpy on ROS 2 Kilted, in its own environment
 	@$(MAKE) --no-print-directory VENV=$(VENV)-kilted REFERENCE=reference-kilted $(VENV)-kilted/.test
 	$(VENV)-kilted/bin/pytest $(WITH) -n auto -m "not alone" tests/native tests/against_rclpy/test_api_coverage.py
-	$(VENV)-kilted/bin/pytest $(WITH) -n auto --transport rclpy generated
+	$(VENV)-kilted/bin/pytest $(WITH) -n auto --transport rclpy generated tests/libraries/inside/aio
 
 interop: $(VENV)/.test  ## meet other implementations of rmw_zenoh's conventions and of DDS (INSTALL=1 first, about 1 GB)
 	$(BIN)/python -m tests.interop.bench $(if $(INSTALL),--install) $(OPTIONS)

@@ -93,6 +93,18 @@ def test_action_that_is_cancelled(transport: str) -> None:
     assert "fibonacci_server: canceled" in lines
 
 
+@local_and_slowly_real
+def test_async_nodes(transport: str) -> None:
+    lines = converse(transport, "async_nodes/server.py", ":", "async_nodes/client.py")
+    assert [line for line in lines if line.startswith("async_client: ")] == [
+        "async_client: sums: [1, 2, 3]",
+        "async_client: result: [0, 1, 1, 2, 3, 5]",
+        "async_client: enough: 13",
+        "async_client: too slow",
+    ]
+    assert [line for line in lines if line.startswith("async_server: ")] == ["async_server: cancelled"] * 2
+
+
 @local_and_real
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send Ctrl-C to a process")
 def test_topics(transport: str) -> None:

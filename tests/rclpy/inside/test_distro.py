@@ -99,10 +99,17 @@ def test_jazzy_is_told_once_and_strict_mode_refuses(node: Node, capfd: Any, monk
 
 
 def test_a_name_that_is_missing_names_its_ros(capfd: Any) -> None:
-    import rclpy.experimental
+    assert not hasattr(rclpy.node, "BaseNode")
+    assert "BaseNode is ROS 2 Lyrical's; the local transport does not have it" in capfd.readouterr().err
 
-    assert not hasattr(rclpy.experimental, "AsyncNode")
-    assert "AsyncNode is ROS 2 Lyrical's; the local transport does not have it" in capfd.readouterr().err
+
+def test_asyncio_has_the_names_of_lyrical(capfd: Any) -> None:
+    from rclpy.experimental import AsyncNode
+    from rclpy.experimental.async_node import AsyncNode as same
+    from rclpy_asyncio import AsyncNode as ours
+
+    assert AsyncNode is same is ours
+    assert "AsyncNode is ROS 2 Lyrical's; real Jazzy will refuse it" in capfd.readouterr().err
 
 
 def test_each_name_of_the_tables_can_be_imported(lyrical: None) -> None:

@@ -91,6 +91,7 @@ API: Final[dict[str, Api]] = {
     "publisher_class": Api(_LYRICAL, "create_lifecycle_publisher(publisher_class=)"),
     "on_new_callbacks": Api(_LYRICAL, "set_on_new_message_callback() of a handle, or its kin"),
     "executing": Api(_LYRICAL, "ServerGoalHandle.executing()"),
+    "asyncio": Api(_LYRICAL, "rclpy.experimental.AsyncNode and what it makes"),
 }
 """By the name that `uses` gets."""
 
@@ -130,6 +131,16 @@ _INFO = {"MessageInfo": "rclpy.impl.newer"}
 _INTROSPECTION = {
     "Clock": "rclpy.clock",
     "ServiceIntrospectionState": "rclpy.service_introspection",
+}
+# The modules of upstream's asyncio, and the class of each.
+_ASYNC = {
+    "async_client": "AsyncClient",
+    "async_clock": "AsyncClock",
+    "async_node": "AsyncNode",
+    "async_publisher": "AsyncPublisher",
+    "async_service": "AsyncService",
+    "async_subscription": "AsyncSubscription",
+    "async_timer": "AsyncTimer",
 }
 
 NAMES: Final[dict[Distro, dict[str, dict[str, str]]]] = {
@@ -221,19 +232,9 @@ NAMES: Final[dict[Distro, dict[str, dict[str, str]]]] = {
         "rclpy.wait_for_message": {"MsgT": _TYPES},
     },
     _LYRICAL: {
-        "rclpy.exceptions": {"TimeSourceChangedError": ""},
-        "rclpy.experimental": dict.fromkeys(
-            (
-                "AsyncClient",
-                "AsyncClock",
-                "AsyncNode",
-                "AsyncPublisher",
-                "AsyncService",
-                "AsyncSubscription",
-                "AsyncTimer",
-            ),
-            "",
-        ),
+        "rclpy.exceptions": {"TimeSourceChangedError": "rclpy_asyncio"},
+        "rclpy.experimental": dict.fromkeys(_ASYNC.values(), "rclpy_asyncio"),
+        **{f"rclpy.experimental.{module}": {name: "rclpy_asyncio"} for module, name in _ASYNC.items()},
         "rclpy.client": {"BaseClient": "rclpy.client:_BaseClient"},
         "rclpy.clock": {"BaseClock": "rclpy.clock:_BaseClock"},
         "rclpy.node": {"BaseNode": "rclpy.node:_BaseNode", "ServiceEndpointInfo": "rclpy.impl.newer"},

@@ -1,0 +1,12 @@
+"""Service clients of an AsyncNode. `rclpy_asyncio` has them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rclpy.impl.reexports import reexport
+
+if TYPE_CHECKING:
+    from rclpy_asyncio import AsyncClient as AsyncClient  # noqa: PLC0414 - programs import it from here
+else:
+    __getattr__ = reexport(__name__)
