@@ -3,9 +3,9 @@
     python benchmarks/rust.py [--rounds N]
 
 The crates of ros2_rust come from a registry that is not within reach, so the peer is the same program in C++
-(cpp_peer.cpp, `-O2`). The programs take turns; the figures are process CPU time, medians over the rounds. "Again"
-reuses the vector. A view borrows strings and arrays; beside it stands the peer that decodes into an old message.
-A `String` allocates, and a short `std::string` does not.
+(cpp_peer.cpp, `-O2`). The programs take turns; the figures are process CPU time, medians over the rounds.
+"Again" reuses the vector. A view borrows strings and arrays; beside it stands the peer that decodes into an
+old message. A `String` allocates, and a short `std::string` does not.
 """
 
 from __future__ import annotations
