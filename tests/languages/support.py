@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from ifgen_runtime import serialize
+from ifgen_tools.conformance.random_messages import random_message
 from ifgen_tools.conformance.testee import Testee
 
 from ..codec.support import generate as generate_classes
-from ..conformance.make_cases import random_message
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 SUITE: Final = ROOT / "tests/conformance"

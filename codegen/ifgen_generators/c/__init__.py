@@ -35,7 +35,8 @@ def _files(request: Request, tables: Tables, bounds: Bounds) -> Iterator[File]:
         yield File(c_family.path(interface, "c"), sources.source(interface))
     header = (_HERE / "cdr.h").read_text("utf-8")
     yield File("ifgen/cdr.h", header.replace("@depth@", str(tables.depth)))
-    yield File("ifgen/cdr.c", (_HERE / "cdr.c").read_text("utf-8"))
+    for name in ("cdr.c", "equal.c"):
+        yield File(f"ifgen/{name}", (_HERE / name).read_text("utf-8"))
     if request.options["testee"]:
         yield from (
             File(f"testee/{name}", (_HERE / name).read_text("utf-8")) for name in ("testee.h", "testee.c")

@@ -55,7 +55,9 @@ def files(model: Model, options: Options) -> dict[str, str]:
         )
     if options.testee and options.crate:
         text = (HERE / "testee.rs").read_text(encoding="utf-8").replace("interfaces::", f"{options.crate}::")
-        output["src/bin/testee.rs"] = text + "".join(canonical(interfaces, options.crate))
+        output["src/bin/testee.rs"] = text + "".join(
+            canonical(interfaces, types, options.crate, options.views)
+        )
     return output
 
 

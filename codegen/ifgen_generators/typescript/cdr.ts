@@ -40,6 +40,8 @@ export interface MessageType<T> {
   encode(message: T): Uint8Array;
   /** The message in a payload of either byte order. Throws DecodeError. */
   decode(payload: Uint8Array, options?: DecodeOptions): T;
+  /** Whether all fields are equal: by IEEE 754, NaN is not equal to itself, and -0 is equal to 0. */
+  equals(a: T, b: T): boolean;
 }
 
 const SMALL = 1 << 16;
@@ -590,3 +592,14 @@ function wrong({ type, bound }: FieldType, value: any, at: string): string | und
 
 /** Whether 64-bit integers are numbers in messages: an option of the generator. */
 export const INT64_NUMBER: boolean = false;
+
+/** Whether all fields of two messages are equal. */
+export function equals<T>(type: MessageType<T>, a: T, b: T): boolean {
+  return type.fields.every(({ name, type, array }) => {
+    const one = a[name as keyof T] as any;
+    const other = b[name as keyof T] as any;
+    const same = (x: any, y: any) => (typeof type === "string" ? x === y : equals(type, x, y));
+    if (array === undefined) return same(one, other);
+    return one.length === other.length && one.every((element: any, i: number) => same(element, other[i]));
+  });
+}

@@ -204,6 +204,9 @@ class _Module:
         yield f"  decode(payload: Uint8Array, options?: cdr.DecodeOptions): {name} {{"
         yield f"    return cdr.decode(decode{name}, payload, options);"
         yield "  },"
+        yield f"  equals(a: {name}, b: {name}): boolean {{"
+        yield f"    return cdr.equals({name}, a, b);"
+        yield "  },"
         for constant in message.constants:
             yield from _comment(constant.documentation, "  ")
             yield f"  {constant.name}: {self._value(constant.type, constant.exact_value)},"

@@ -95,14 +95,6 @@ def test_the_corpus_of_traps_compiles(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_suite_passes_with_sanitizers(everything: Model, tmp_path: Path) -> None:
-    write(generate(GENERATOR, everything, bounds=EVERYTHING, testee=True), tmp_path)
-    flags = [*STRICT, "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover"]
-    testee = build(tmp_path, [tool("gcc"), *flags], ".c", tmp_path / "program")
-    assert passes(str(testee))
-
-
-@pytest.mark.slow
 def test_the_suite_passes_on_a_big_endian_processor(everything: Model, tmp_path: Path) -> None:
     emulator = tool("qemu-ppc")
     write(generate(GENERATOR, everything, bounds=EVERYTHING, testee=True), tmp_path)

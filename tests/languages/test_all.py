@@ -1,0 +1,76 @@
+"""What holds in all languages: the suite, random messages, hostile bytes, and names that meet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from random import Random
+
+import pytest
+from ifgen.pipeline.stages import load as load_registry
+from ifgen_runtime import serialize
+from ifgen_tools.conformance import testee as protocol
+from ifgen_tools.conformance.cases import MEMORY
+from ifgen_tools.conformance.random_messages import message_classes, random_message
+
+from ..codec.fuzzing.payloads import mutated
+from ..conformance.support import run_suite
+from .support import ALL
+from .testees import command_of
+
+LANGUAGES = ("c", "cpp", "rust", "typescript")
+MESSAGES = 50  # random ones of each type; `ifgen conformance --random 1000` is for a release
+MUTATIONS = 40  # of each type
+
+
+@pytest.fixture(params=LANGUAGES)
+def command(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """A testee with all types: C and C++ with sanitizers, Rust with checks of overflow."""
+    return command_of(request.param, tmp_path_factory)
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)  # minutes of compiling, for whichever test comes first
+def test_the_suite_passes(command: list[str]) -> None:
+    code, text = run_suite(command)
+    assert code == 0, text
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)  # minutes of compiling, as above
+def test_random_messages_have_the_same_bytes_and_values(command: list[str]) -> None:
+    code, text = run_suite(command, "--random", str(MESSAGES))
+    assert code == 0, text
+    assert text.endswith(" types: 0 differ in bytes, 0 in values\n")
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)  # minutes of compiling, as above
+def test_mutated_bytes_are_read_or_refused(command: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ASAN_OPTIONS", "quarantine_size_mb=8")  # what is freed does not count
+    program = protocol.Testee(command, 20)
+    try:
+        program.hello()
+        before = program.peak
+        wrong = list(_wrong(program))
+        memory = program.peak - before
+    finally:
+        program.close()
+    assert wrong == []
+    assert memory < MEMORY
+
+
+def _wrong(program: protocol.Testee) -> Iterator[str]:
+    """Replies that are neither a payload nor a refusal, and payloads that are read as others than they are."""
+    for name, cls in message_classes(load_registry(*ALL)).items():
+        rng = Random(f"hostile {name}")
+        good = [bytes(serialize(random_message(rng, cls))) for _ in range(8)]
+        broken = [mutated(rng, rng.choice(good), rng.choice(good)).hex() or "-" for _ in range(MUTATIONS)]
+        replies = program.ask_all([protocol.Request("recode", name, (data,)) for data in broken])
+        read = [reply.data for reply in replies if reply.verdict == "ok"]
+        again = program.ask_all([protocol.Request("recode", name, (data,)) for data in read])
+        for data, reply in zip(broken, replies, strict=True):
+            if reply.verdict not in ("ok", "refused"):
+                yield f"{name} {data}: {reply.text}"
+        for data, reply in zip(read, again, strict=True):
+            if reply.text != f"ok {data}":
+                yield f"{name} {data}: {reply.text}"
