@@ -13,6 +13,7 @@ from ifgen_generators.c.bounds import Bounds
 from ifgen_generators.c.rows import Tables
 from ifgen_generators.c.sources import Sources
 from ifgen_generators.c.testee import testee
+from ifgen_generators.shared import name_clashes
 
 _HERE: Final = Path(__file__).parent
 
@@ -23,7 +24,7 @@ def generate(request: Request) -> Response:
     types = c_family.needed(request.model)
     for message in types:
         bounds.add(message)
-    if findings := (*_wrong(request), *_findings(bounds)):
+    if findings := (*_wrong(request), *_findings(bounds), *name_clashes(request.model, "c")):
         return Response(findings=findings)
     return Response(tuple(_files(request, Tables(types, bounds), bounds)))
 

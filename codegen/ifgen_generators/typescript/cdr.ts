@@ -27,6 +27,10 @@ export interface DecodeOptions {
   copy?: boolean;
 }
 
+/** Some of the values of a message. Here and below, names that no message can hide. */
+export type Some<T> = Partial<T>;
+export type Members = Record<string, unknown>;
+
 /** The value of a message's name: what can be done with messages of that type. */
 export interface MessageType<T> {
   /** `pkg/msg/Name`. */
@@ -35,7 +39,7 @@ export interface MessageType<T> {
   readonly typeHash: string;
   readonly fields: readonly FieldType[];
   /** A new message: default values, except for those given. */
-  create(values?: Partial<T>): T;
+  create(values?: Some<T>): T;
   /** The payload, with its 4-byte header. Throws EncodeError. */
   encode(message: T): Uint8Array;
   /** The message in a payload of either byte order. Throws DecodeError. */
