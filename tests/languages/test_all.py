@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from random import Random
 
 import pytest
@@ -10,12 +11,13 @@ from ifgen.pipeline.stages import load as load_registry
 from ifgen_runtime import serialize
 from ifgen_tools.conformance import testee as protocol
 from ifgen_tools.conformance.cases import MEMORY
-from ifgen_tools.conformance.random_messages import message_classes, random_message
+from ifgen_tools.conformance.random_messages import Comparison, compare, message_classes, random_message
 
 from ..codec.fuzzing.payloads import mutated
 from ..conformance.support import run_suite
-from .support import ALL
-from .testees import command_of
+from .c_family.support import load
+from .support import ALL, write_traps
+from .testees import build_testee, command_of
 
 LANGUAGES = ("c", "cpp", "rust", "typescript")
 MESSAGES = 50  # random ones of each type; `ifgen conformance --random 1000` is for a release
@@ -74,3 +76,31 @@ def _wrong(program: protocol.Testee) -> Iterator[str]:
         for data, reply in zip(read, again, strict=True):
             if reply.text != f"ok {data}":
                 yield f"{name} {data}: {reply.text}"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_trap_has_the_bytes_and_hashes_of_our_classes(tmp_path: Path, language: str) -> None:
+    traps = write_traps(tmp_path / "traps")
+    paths = traps / "trap_msgs", traps / "other_msgs"
+    model = load(*paths)
+    hashes = {message.type_name: message.type_hash for message in model.types}
+    for package in model.packages:
+        for interface in package.interfaces:
+            hashes[interface.type_name] = interface.type_hash
+            hashes |= {service.type_name: service.type_hash for service in interface.services}
+    program = protocol.Testee(build_testee(language, tmp_path, *paths), 20)
+    result = Comparison()
+    try:
+        names = [name for name in sorted(hashes) if name.startswith(("trap_msgs/", "other_msgs/"))]
+        replies = program.ask_all([protocol.Request("hash", name) for name in names])
+        wrong = list(
+            compare(program, load_registry(*paths, include=ALL[:1]), 10, ("random/*_msgs/*",), result)
+        )
+    finally:
+        program.close()
+    assert {name: reply.data for name, reply in zip(names, replies, strict=True)} == {
+        name: hashes[name] for name in names
+    }
+    assert wrong == []
+    assert result.types > 50

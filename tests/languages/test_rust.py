@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ..conformance.support import tool
-from .support import ROOT, differences, example_of, generate, run, write_traps
+from .support import ROOT, example_of, generate, run
 
 
 def test_the_text(tmp_path: Path) -> None:
@@ -17,14 +17,6 @@ def test_the_text(tmp_path: Path) -> None:
     assert "        pub ns: ::std::borrow::Cow<'a, str>," in text
     assert "impl cdr::Service for SetBool {" in (tmp_path / "rs/src/std_srvs.rs").read_text()
     assert "forbid(unsafe_code)" in (tmp_path / "rs/src/lib.rs").read_text()
-
-
-@pytest.mark.slow
-def test_every_trap_has_the_bytes_of_our_codec(tmp_path: Path) -> None:
-    cargo, traps = tool("cargo"), write_traps(tmp_path / "traps")
-    crate = generate(tmp_path, "rust", "rs", traps, testee=True)
-    run([cargo, "build", "--offline", "--quiet"], crate)
-    assert differences([str(crate / "target/debug/testee")], traps, tmp_path / "generated") == []
 
 
 @pytest.mark.slow

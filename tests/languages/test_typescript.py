@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from ..conformance.support import TYPESCRIPT, node_modules, run_suite
-from .support import ALL, ROOT, differences, example_of, generate, run, write_traps
+from .support import ALL, ROOT, example_of, generate, run
 from .testees import compiled_typescript
 
 
@@ -79,13 +79,6 @@ def test_every_option_passes_the_suite(compiler: Path, tmp_path: Path, options: 
         ]
         code, text = run_suite(["node", str(output / "testee.js")], *names)
         assert code == 0, text
-
-
-@pytest.mark.slow
-def test_every_trap_has_the_bytes_of_our_codec(compiler: Path, tmp_path: Path) -> None:
-    traps = write_traps(tmp_path / "traps")
-    output = compiled_typescript(compiler, generate(tmp_path, "typescript", "ts", traps, testee=True))
-    assert differences(["node", str(output / "testee.js")], traps, tmp_path / "generated") == []
 
 
 @pytest.mark.slow

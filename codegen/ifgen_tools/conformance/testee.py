@@ -90,21 +90,22 @@ class Testee:
         """Send requests without waiting between them. Those from a crash on are asked again, one by one."""
         if self._process is None:
             self.hello()
-        assert self._process is not None and self._process.stdin is not None
+        process = self._process
+        assert process is not None and process.stdin is not None
         lines = [
             " ".join((request.op, str(number), request.type_name, *request.arguments))
             for number, request in enumerate(requests, self._next + 1)
         ]
-        writer = Thread(target=_write, args=(self._process.stdin, "\n".join((*lines, "")).encode()))
+        writer = Thread(target=_write, args=(process.stdin, "\n".join((*lines, "")).encode()))
         writer.start()
         replies: list[Reply] = []
-        while (
-            self._process is not None and len(replies) < len(requests) and (line := self._line(self._timeout))
-        ):
+        while len(replies) < len(requests) and self._process is process:
+            if not (line := self._line(self._timeout)):
+                break
             self._next += 1
-            replies.append(self._parsed(line))
-        if len(replies) < len(requests) and self._process is not None:
-            self._process.kill()  # before its pipe is closed: a program that hangs would keep the writer
+            replies.append(self._parsed(line))  # which ends the program if the line is no reply
+        if len(replies) < len(requests):
+            process.kill()  # before its pipe is closed: a program that hangs would keep the writer
         writer.join()
         if len(replies) < len(requests):
             self.close()

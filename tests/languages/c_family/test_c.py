@@ -10,7 +10,7 @@ from ifgen.model import Model
 from ifgen_generators.c import GENERATOR
 
 from ...conformance.support import tool
-from .support import IFGEN, ROOT, WARNINGS, build, corpus, generate, load, passes, run, write
+from .support import IFGEN, ROOT, WARNINGS, build, generate, load, passes, run, write
 
 EVERYTHING = {"*.string": 512, "*.wstring": 64, "*.sequence": 8}
 ROBOT = {
@@ -84,14 +84,6 @@ def test_payloads_have_the_size_of_the_macro_at_most(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def everything() -> Model:
     return load(ROOT / "interfaces", ROOT / "tests/conformance/interfaces")
-
-
-@pytest.mark.slow
-def test_the_corpus_of_traps_compiles(tmp_path: Path) -> None:
-    huge = {"trap_msgs/msg/HugeBounds.text": 9, "trap_msgs/msg/HugeBounds.bytes": 9}
-    write(generate(GENERATOR, corpus(tmp_path), bounds={**EVERYTHING, **huge}, testee=True), tmp_path / "c")
-    compiler = [tool("gcc"), *STRICT, "-O0"]
-    assert build(tmp_path / "c", compiler, ".c", tmp_path / "program").is_file()
 
 
 @pytest.mark.slow
