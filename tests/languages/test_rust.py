@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from ..conformance.support import tool
-from .support import ROOT, example_of, generate, run
+from .support import ALL, ROOT, example_of, generate, run
 
 
 def test_the_text(tmp_path: Path) -> None:
@@ -17,6 +18,17 @@ def test_the_text(tmp_path: Path) -> None:
     assert "        pub ns: ::std::borrow::Cow<'a, str>," in text
     assert "impl cdr::Service for SetBool {" in (tmp_path / "rs/src/std_srvs.rs").read_text()
     assert "forbid(unsafe_code)" in (tmp_path / "rs/src/lib.rs").read_text()
+
+
+@pytest.mark.slow
+def test_clippy_has_no_complaint(tmp_path: Path) -> None:
+    crate = generate(tmp_path, "rust", "rs", *ALL)
+    cargo = tool("cargo")
+    if subprocess.run(
+        [cargo, "clippy", "--version"], capture_output=True, timeout=60, check=False
+    ).returncode:
+        pytest.skip("clippy is not installed")
+    run([cargo, "clippy", "--offline", "--quiet", "--", "-D", "warnings"], crate)
 
 
 @pytest.mark.slow

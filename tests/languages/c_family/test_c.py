@@ -87,6 +87,16 @@ def everything() -> Model:
 
 
 @pytest.mark.slow
+def test_all_packages_compile_freestanding(everything: Model, tmp_path: Path) -> None:
+    write(generate(GENERATOR, everything, bounds=EVERYTHING), tmp_path)
+    own = {tmp_path / "ifgen/cdr.c", tmp_path / "ifgen/equal.c"}
+    whole = tmp_path / "all.c"
+    whole.write_text("".join(f'#include "{path}"\n' for path in sorted(set(tmp_path.rglob("*.c")) - own)))
+    for source in (*own, whole):
+        run([tool("gcc"), *STRICT, "-ffreestanding", f"-I{tmp_path}", "-fsyntax-only", str(source)])
+
+
+@pytest.mark.slow
 def test_the_suite_passes_on_a_big_endian_processor(everything: Model, tmp_path: Path) -> None:
     emulator = tool("qemu-ppc")
     write(generate(GENERATOR, everything, bounds=EVERYTHING, testee=True), tmp_path)
