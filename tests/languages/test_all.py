@@ -63,7 +63,7 @@ def test_mutated_bytes_are_read_or_refused(command: list[str], monkeypatch: pyte
 
 def _wrong(program: protocol.Testee) -> Iterator[str]:
     """Replies that are neither a payload nor a refusal, and payloads that are read as others than they are."""
-    for name, cls in message_classes(load_registry(*ALL)).items():
+    for name, cls in message_classes(load_registry(*ALL)):
         rng = Random(f"hostile {name}")
         good = [bytes(serialize(random_message(rng, cls))) for _ in range(8)]
         broken = [mutated(rng, rng.choice(good), rng.choice(good)).hex() or "-" for _ in range(MUTATIONS)]

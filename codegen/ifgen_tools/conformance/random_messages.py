@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any, Final
 
-from ifgen.definition.interfaces import Registry
+from ifgen.definition.interfaces import Message, Registry
 from ifgen.dynamic.making import make
 from ifgen_runtime import serialize
 from ifgen_runtime.field_types import Basic, Field, Text, fields_of, type_name
@@ -85,21 +85,25 @@ def _number(source: random.Random, basic: Basic) -> Any:
 # -- a testee
 
 
-def message_classes(registry: Registry) -> dict[str, type[Any]]:
-    """The classes of all messages, parts of services and actions included, by type name."""
-    classes: dict[str, type[Any]] = {}
+def message_classes(registry: Registry, only: tuple[str, ...] = ()) -> Iterator[tuple[str, type[Any]]]:
+    """The names and classes of messages, also of parts of services, whose `random/NAME` fits `only`."""
+    for interface in sorted(registry, key=lambda interface: interface.type_name):
+        messages = (interface,) if isinstance(interface, Message) else interface.messages
+        names = {message.type_name for message in messages}
+        if only:
+            names = {name for name in names if any(fnmatchcase(f"random/{name}", each) for each in only)}
+        if names:  # making a class takes time
+            classes = dict(_classes_in(make(interface, registry)))
+            yield from ((name, classes[name]) for name in sorted(names))
 
-    def collect(cls: type[Any]) -> None:
-        if hasattr(cls, "_fields_and_field_types"):
-            classes[type_name(cls)] = cls
-            return
-        for name, value in vars(cls).items():
-            if isinstance(value, type) and not name.startswith("__"):
-                collect(value)
 
-    for interface in registry:
-        collect(make(interface, registry))
-    return dict(sorted(classes.items()))
+def _classes_in(cls: type[Any]) -> Iterator[tuple[str, type[Any]]]:
+    if hasattr(cls, "_fields_and_field_types"):
+        yield type_name(cls), cls
+        return
+    for name, value in vars(cls).items():
+        if isinstance(value, type) and not name.startswith("__"):
+            yield from _classes_in(value)
 
 
 @dataclass(slots=True)
@@ -139,9 +143,7 @@ def compare(
 ) -> Iterator[str]:
     """Ask a testee for `count` random messages of each type; yield a sentence for each difference."""
     lacks = testee.hello().get("skip", "").split(",")
-    for name, cls in message_classes(registry).items():
-        if only and not any(fnmatchcase(f"random/{name}", pattern) for pattern in only):
-            continue
+    for name, cls in message_classes(registry, only):
         source, left = random.Random(f"{name} {count}"), count
         while left > 0:
             asked = list(_questions(source, registry, name, cls, min(_BATCH, left)))
