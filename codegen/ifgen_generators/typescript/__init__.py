@@ -9,8 +9,8 @@ from ifgen.generators import File, Generator, Option, Request, Response
 
 def generate(request: Request) -> Response:
     """The modules of the interfaces that are asked for and of what they need; errors where names clash."""
-    from ifgen_generators.shared import name_clashes
-    from ifgen_generators.typescript.generator import MEMBERS, Options, files  # `list` does without
+    from ifgen_generators.shared import name_clashes  # `generators list` does without
+    from ifgen_generators.typescript.generator import MEMBERS, Options, files  # the same
 
     if findings := tuple(name_clashes(request.model, "typescript", MEMBERS)):
         return Response(findings=findings)
