@@ -189,9 +189,12 @@ pub fn align(p: usize, n: usize) -> usize {
     (p + n - 1) & !(n - 1)
 }
 
-/// Whether there is a NUL in a text: eight bytes at a time, which is faster than a search for its place in short texts.
+/// Whether there is a NUL in a text. Most texts are so short that a call of the search takes longer than these loops.
 #[inline]
 fn has_nul(text: &[u8]) -> bool {
+    if text.len() > 64 {
+        return text.contains(&0);
+    }
     let chunks = text.chunks_exact(8);
     let rest = chunks.remainder().contains(&0);
     rest || chunks.fold(false, |any, chunk| any | chunk.contains(&0))
