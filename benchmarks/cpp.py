@@ -16,6 +16,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from ifgen import resources
@@ -27,20 +28,25 @@ CONFIG = """\
 [tool.ifgen]
 paths = [{paths}]
 python = false
-[tool.ifgen.generate.cpp]
-use = "cpp"
-out = "include"
+[tool.ifgen.generate.code]
+use = "{generator}"
+out = "{out}"
 with_deps = true
 """
 Figures = dict[str, list[float]]
 
 
+def generate(folder: Path, generator: str) -> Path:
+    """The folder with what a generator writes for the messages."""
+    paths = ", ".join(f'"{resources.bundled_interfaces() / package}"' for package in PACKAGES)
+    (folder / "pyproject.toml").write_text(CONFIG.format(paths=paths, generator=generator, out=generator))
+    subprocess.run([sys.executable, "-m", "ifgen", "generate", "--quiet"], cwd=folder, check=True)
+    return folder / generator
+
+
 def ours(folder: Path) -> Path:
     """The program with headers of ifgen."""
-    paths = ", ".join(f'"{resources.bundled_interfaces() / package}"' for package in PACKAGES)
-    (folder / "pyproject.toml").write_text(CONFIG.format(paths=paths))
-    subprocess.run([sys.executable, "-m", "ifgen", "generate", "--quiet"], cwd=folder, check=True)
-    return built(folder / "ours", [f"-I{folder / 'include'}"])
+    return built(folder / "ours", [f"-I{generate(folder, 'cpp')}"])
 
 
 def theirs(folder: Path) -> Path:
@@ -68,22 +74,22 @@ def figures(program: Path) -> Figures:
     return {name: [float(figure) for figure in rest] for name, *rest in rows}
 
 
-def main() -> None:
-    """Compile, measure in turns, print the table."""
-    parser = argparse.ArgumentParser(description="C++ beside rosidl and Fast CDR")
+def is_ready(compiler: str) -> bool:
+    """Whether this machine has the compiler, g++ and the headers of ROS; prints what to install if not."""
+    if shutil.which(compiler) and shutil.which("g++") and (WHEELS / "include" / "fastcdr").is_dir():
+        return True
+    print(f"{compiler}, g++ or the headers of ROS are not installed")
+    return False
+
+
+def compare(ours: Path, theirs: Path, columns: Sequence[str], asked: str) -> None:
+    """Measure two programs in turns, and print the table."""
+    parser = argparse.ArgumentParser(description="beside rosidl and Fast CDR")
     parser.add_argument("--rounds", type=int, default=3)
-    rounds = parser.parse_args().rounds
-    if shutil.which("g++") is None or not (WHEELS / "include" / "fastcdr").is_dir():
-        print("g++ or the headers of ROS are not installed")
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        programs = ours(Path(folder)), theirs(Path(folder))
-        runs = [[figures(program) for program in programs] for _ in range(rounds)]
+    runs = [(figures(ours), figures(theirs)) for _ in range(parser.parse_args().rounds)]
     print("Fast CDR's time divided by ours; in brackets our nanoseconds.\n")
-    print(
-        "| message | bytes | encode | encode again | decode | decode again |\n|---|---:|---:|---:|---:|---:|"
-    )
-    ratios: list[list[float]] = [[], [], [], []]
+    print(f"| message | bytes | {' | '.join(columns)} |\n|---|---:|{'---:|' * len(columns)}")
+    ratios: list[list[float]] = [[] for _ in columns]
     for name, (size, *_) in runs[0][0].items():
         cells = []
         for column, of in enumerate(ratios, 1):
@@ -92,7 +98,15 @@ def main() -> None:
             cells.append(f"{of[-1]:.1f} ({mine:,.0f})")
         print(f"| {name} | {size:,.0f} | {' | '.join(cells)} |")
     means = [f"**{statistics.geometric_mean(of):.1f}**" for of in ratios]
-    print(f"| geometric mean (asked: 2.5, 2.5, 1.5, 1.5) | | {' | '.join(means)} |")
+    print(f"| geometric mean (asked: {asked}) | | {' | '.join(means)} |")
+
+
+def main() -> None:
+    """Compile, measure in turns, print the table."""
+    if is_ready("g++"):
+        with tempfile.TemporaryDirectory() as folder:
+            columns = ("encode", "encode again", "decode", "decode again")
+            compare(ours(Path(folder)), theirs(Path(folder)), columns, "2.5, 2.5, 1.5, 1.5")
 
 
 if __name__ == "__main__":

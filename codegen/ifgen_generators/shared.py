@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 
-from ifgen.model import Interface, Message, Model, Step
+from ifgen.generators import Finding
+from ifgen.model import RESERVED, Interface, Message, Model, Step
 
 
 def needed_interfaces(model: Model) -> list[Interface]:
@@ -53,3 +54,29 @@ def smallest_element(message: Message, types: Mapping[str, Message]) -> int:
         )
         size += one * (kind.size or 1)
     return size or 1
+
+
+def name_clashes(model: Model, language: str, members: Container[str] = ()) -> Iterator[Finding]:
+    """Errors at fields and constants that would have one name in a language, such as `class_` beside `class`.
+
+    `members` are the names in the scope of constants that the generated code has itself.
+    """
+    for message in model.types:
+        for part in (message.package, message.name) if language in ("cpp", "rust") else ():
+            if part in RESERVED[language]:  # they are namespaces and types; nothing but fields is renamed
+                yield _clash(message.id, f"`{part}` in {message.type_name} is a keyword of {language}")
+        for kind, elements in (("field", message.fields), ("constant", message.constants)):
+            owners: dict[str, str] = {}
+            for element in elements:
+                name = element.names[language]
+                owner = owners.setdefault(name, element.name)
+                if owner != element.name:
+                    words = f"the {kind} `{element.name}` has the name `{name}`, as `{owner}` has"
+                    yield _clash(element.id, f"{words} in {language}")
+                elif kind == "constant" and name in members:
+                    words = f"the constant `{name}` has the name of something else in {language}"
+                    yield _clash(element.id, words)
+
+
+def _clash(element: str, message: str) -> Finding:
+    return Finding(element, message, help="rename it, or the other one")

@@ -23,7 +23,8 @@ from typing import Any, Final
 
 import ifgen
 from ifgen_runtime import from_dict, serialize, to_dict
-from ifgen_runtime.field_types import Basic, Field, Text, fields_of, message_class
+from ifgen_runtime.field_types import fields_of, message_class
+from ifgen_tools.conformance.random_messages import fill, random_message
 
 from tests.codec.big_endian import big_endian
 from tests.codec.support import Classes, generate
@@ -39,70 +40,6 @@ VISIBILITY: Final = (
     "rosidl_generator_cpp__visibility_control.hpp",
     "rosidl_typesupport_fastrtps_cpp__visibility_control.h",
 )
-LETTERS: Final = "abcxyz019_/é€𝄞"
-
-# -- values
-
-
-def text(source: random.Random, type_: Text, ascii_only: bool = False) -> str:
-    """A text within its bound."""
-    letters = LETTERS[:11] if ascii_only else LETTERS
-    most = 5 if type_.maximum is None else min(5, type_.maximum)
-    value = "".join(source.choice(letters) for _ in range(source.randrange(most + 1)))
-    while (
-        type_.maximum is not None
-        and len(value.encode("utf-16-le" if type_.wide else "utf-8")) > type_.maximum
-    ):
-        value = value[:-1]
-    return value
-
-
-def number(source: random.Random, basic: Basic) -> Any:
-    """A number of any size, sometimes one of the extremes."""
-    if basic.name == "boolean":
-        return source.random() < 0.5
-    if basic.is_float:
-        value = source.choice(
-            [0.0, -0.0, 1.0, source.uniform(-1e3, 1e3), source.uniform(-1, 1) * 1e30, float("inf")]
-        )
-        return struct.unpack("<f", struct.pack("<f", value))[0] if basic.size == 4 else value
-    if basic.name in ("octet", "char"):
-        return bytes([source.randrange(256)]) if basic.name == "octet" else chr(source.randrange(256))
-    low, high = basic.range
-    return source.choice(
-        [low, high, source.randint(low, high), source.randint(max(low, -100), min(high, 100))]
-    )
-
-
-def value_of(source: random.Random, field: Field, depth: int) -> Any:
-    """A value or an element of a field."""
-    if isinstance(field.type, Basic):
-        return number(source, field.type)
-    return (
-        text(source, field.type)
-        if isinstance(field.type, Text)
-        else random_message(source, field.type, depth + 1)
-    )
-
-
-def fill(source: random.Random, message: Any, field: Field, count: int, depth: int = 0) -> None:
-    """Give a field of a message a random value, with the given number of elements if it is a sequence."""
-    value = (
-        [value_of(source, field, depth) for _ in range(count if field.is_sequence else field.size or 0)]
-        if field.is_collection
-        else value_of(source, field, depth)
-    )
-    setattr(message, field.attribute, value)
-
-
-def random_message(source: random.Random, cls: type[Any], depth: int = 0) -> Any:
-    """A message with random values; the deeper, the shorter its sequences."""
-    message = cls()
-    for field in fields_of(cls):
-        most = min(3 if depth == 0 else 1 if depth < 3 else 0, 3 if field.maximum is None else field.maximum)
-        fill(source, message, field, source.randint(0, most), depth)
-    return message
-
 
 # -- what real rosidl and Fast CDR write
 

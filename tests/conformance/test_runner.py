@@ -147,3 +147,27 @@ def test_a_program_that_is_not_there(suite: Path) -> None:
 
 def test_a_pattern_that_no_case_has(suite: Path) -> None:
     assert "no case has a name like 'x/*'" in str(run(suite, {}, "--only", "x/*").exception)
+
+
+EMPTY = "random/std_msgs/msg/Empty"
+
+
+def test_random_messages(suite: Path) -> None:
+    answers = {"load": "ok 0001000000", "dump": "ok ", "equal": "ok 1"}
+    result = run(suite, answers, "--random", "3", "--only", EMPTY)
+    counts = "3 messages of 1 types"
+    assert (result.return_value, result.stdout) == (0, f"{counts}: 0 differ in bytes, 0 in values\n")
+    result = run(suite, answers | {"equal": "crash", "load": "ok 00"}, "--random", "3", "--only", EMPTY)
+    assert result.return_value == 1
+    assert "load std_msgs/msg/Empty : expected 0001000000, got ok 00" in result.stdout
+    assert (
+        "equal std_msgs/msg/Empty 0001000000 0001000000: expected 1, got crash exit code 3" in result.stdout
+    )
+    assert result.stdout.endswith(f"{counts}: 3 differ in bytes, 3 in values\n")
+
+
+def test_random_messages_of_a_type_that_is_unknown(suite: Path) -> None:
+    unknown = dict.fromkeys(("load", "dump", "equal"), "skip unknown-type")
+    result = run(suite, unknown, "--random", "3", "--only", EMPTY)
+    assert result.return_value == 1
+    assert result.stdout.endswith("in values, 1 types skipped\n")

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import random
 import re
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Final
-
-from ifgen_runtime import serialize
-from ifgen_tools.conformance.testee import Testee
-
-from ..codec.support import generate as generate_classes
-from ..conformance.make_cases import random_message
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 SUITE: Final = ROOT / "tests/conformance"
@@ -79,20 +72,3 @@ def write_traps(folder: Path) -> Path:
         folder.parent,
     )
     return folder
-
-
-def differences(command: Sequence[str], traps: Path, generated: Path) -> list[str]:
-    """The types of which a testee writes other bytes than our codec in Python."""
-    testee, wrong = Testee(command, 60), []
-    try:
-        for name, cls in sorted(generate_classes(generated, traps).items()):
-            if name.startswith(("trap_msgs/", "other_msgs/")):
-                messages = [cls(), *(random_message(random.Random(f"{name} {n}"), cls) for n in range(5))]
-                payloads = [serialize(message).hex() for message in messages]
-                if [testee.ask("recode", name, payload).text for payload in payloads] != [
-                    f"ok {p}" for p in payloads
-                ]:
-                    wrong.append(name)
-    finally:
-        testee.close()
-    return wrong

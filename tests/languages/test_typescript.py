@@ -2,33 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from ..conformance.support import TYPESCRIPT, node_modules, run_suite
-from .support import ALL, ROOT, TSCONFIG, differences, example_of, generate, run, write_traps
+from .support import ALL, ROOT, example_of, generate, run
+from .testees import compiled_typescript
 
 
 @pytest.fixture(scope="session")
 def compiler(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The program tsc."""
     return node_modules(tmp_path_factory.mktemp("npm"), TYPESCRIPT) / ".bin/tsc"
-
-
-def compiled(compiler: Path, source: Path) -> Path:
-    """The folder with the JavaScript of a folder. Any complaint of tsc fails the test."""
-    output = source.with_name(f"{source.name}-js")
-    (source / "package.json").write_text('{"type": "module"}\n')
-    options = TSCONFIG | {"rootDir": str(source), "outDir": str(output)}
-    (source.parent / "tsconfig.json").write_text(
-        json.dumps({"compilerOptions": options, "include": [str(source)]})
-    )
-    run([str(compiler), "-p", "."], source.parent)
-    (output / "package.json").write_text('{"type": "module"}\n')
-    return output
 
 
 @pytest.fixture(scope="module")
@@ -61,19 +48,12 @@ def test_arrays_are_typed(battery: str) -> None:
 
 
 @pytest.mark.slow
-def test_all_types_pass_the_suite(compiler: Path, tmp_path: Path) -> None:
-    output = compiled(compiler, generate(tmp_path, "typescript", "ts", *ALL, testee=True))
-    code, text = run_suite(["node", str(output / "testee.js")])
-    assert code == 0, text
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "options", [{"int64": "number"}, {"arrays": "plain"}, {"int64": "number", "arrays": "plain"}]
 )
 def test_every_option_passes_the_suite(compiler: Path, tmp_path: Path, options: dict[str, Any]) -> None:
     only = ["conformance_msgs", "test_msgs", "std_msgs", "sensor_msgs"]
-    output = compiled(
+    output = compiled_typescript(
         compiler, generate(tmp_path, "typescript", "ts", *ALL, only=only, testee=True, **options)
     )
     patterns = [
@@ -102,20 +82,13 @@ def test_every_option_passes_the_suite(compiler: Path, tmp_path: Path, options: 
 
 
 @pytest.mark.slow
-def test_every_trap_has_the_bytes_of_our_codec(compiler: Path, tmp_path: Path) -> None:
-    traps = write_traps(tmp_path / "traps")
-    output = compiled(compiler, generate(tmp_path, "typescript", "ts", traps, testee=True))
-    assert differences(["node", str(output / "testee.js")], traps, tmp_path / "generated") == []
-
-
-@pytest.mark.slow
 def test_the_program_of_the_page_runs(compiler: Path, tmp_path: Path) -> None:
     blocks = example_of("typescript.md", tmp_path)
     (tmp_path / "src").mkdir()
     generate(tmp_path, "typescript", "src/ros", tmp_path / "demo_msgs")
     program = "declare const console: { log(...words: unknown[]): void };\n" + blocks["typescript"]
     (tmp_path / "src/main.ts").write_text(program)
-    output = compiled(compiler, tmp_path / "src")
+    output = compiled_typescript(compiler, tmp_path / "src")
     assert run(["node", "main.js"], output) == blocks["output"]
 
 
@@ -168,6 +141,6 @@ def test_wrong_values_and_views(compiler: Path, tmp_path: Path) -> None:
     source = generate(
         tmp_path, "typescript", "ts", ROOT / "interfaces/sensor_msgs", ROOT / "interfaces/std_msgs"
     )
-    output = compiled(compiler, source)
+    output = compiled_typescript(compiler, source)
     (output / "program.js").write_text(PROGRAM)
     assert run(["node", "program.js"], output) == EXPECTED

@@ -13,6 +13,7 @@ from ifgen_generators.c.bounds import Bounds
 from ifgen_generators.c.rows import Tables
 from ifgen_generators.c.sources import Sources
 from ifgen_generators.c.testee import testee
+from ifgen_generators.shared import name_clashes
 
 _HERE: Final = Path(__file__).parent
 
@@ -23,7 +24,7 @@ def generate(request: Request) -> Response:
     types = c_family.needed(request.model)
     for message in types:
         bounds.add(message)
-    if findings := (*_wrong(request), *_findings(bounds)):
+    if findings := (*_wrong(request), *_findings(bounds), *name_clashes(request.model, "c")):
         return Response(findings=findings)
     return Response(tuple(_files(request, Tables(types, bounds), bounds)))
 
@@ -35,7 +36,8 @@ def _files(request: Request, tables: Tables, bounds: Bounds) -> Iterator[File]:
         yield File(c_family.path(interface, "c"), sources.source(interface))
     header = (_HERE / "cdr.h").read_text("utf-8")
     yield File("ifgen/cdr.h", header.replace("@depth@", str(tables.depth)))
-    yield File("ifgen/cdr.c", (_HERE / "cdr.c").read_text("utf-8"))
+    for name in ("cdr.c", "equal.c"):
+        yield File(f"ifgen/{name}", (_HERE / name).read_text("utf-8"))
     if request.options["testee"]:
         yield from (
             File(f"testee/{name}", (_HERE / name).read_text("utf-8")) for name in ("testee.h", "testee.c")

@@ -31,7 +31,7 @@ enum {
 typedef struct {
   uint8_t kind;
   uint8_t width;   /* bytes of a number on the wire */
-  uint16_t extra;  /* REPEAT: rows; STRINGS and WSTRINGS: most characters, or 0 if the buffer is the only bound */
+  uint16_t extra;  /* REPEAT: rows; NUMBERS: whether they are floats; STRINGS and WSTRINGS: most characters, or 0 if the buffer is the only bound */
   uint32_t offset; /* of the field in its message or element */
   uint32_t count;  /* 0: the number that the COUNT before it has */
   uint32_t stride;
@@ -64,6 +64,10 @@ bool ifgen_cdr_decode(
 
 /* Return the number of bytes that encoding needs, or 0 for a message that cannot be encoded. */
 size_t ifgen_cdr_encoded_size(const ifgen_cdr_row *rows, const void *message, ifgen_cdr_failure *failure);
+
+/* Return whether two messages have equal fields: by IEEE 754, NaN is not equal to itself, and -0.0 is equal to 0.0.
+ * It is in equal.c. */
+bool ifgen_cdr_equal(const ifgen_cdr_row *rows, const void *message, const void *other);
 
 /* Write the path of the failure to `text`, such as `transforms[3].header.frame_id`: at most `room` characters with the
  * NUL, the rest is cut off. `fields` is the X_fields of the message. */

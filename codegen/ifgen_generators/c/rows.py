@@ -34,9 +34,10 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """Memory that has numbers of `width` bytes only, `size` bytes in all."""
+    """Memory that has numbers of `width` bytes only, `size` bytes in all; all of them are floats, or none."""
 
     width: int
+    is_float: bool
     size: int
 
 
@@ -71,7 +72,8 @@ class Tables:
             return self._numbers[field.type.message.type_name]
         if field.type.bits is None or field.type.primitive == "bool":
             return None
-        return Numbers(field.type.bits // 8, field.type.bits // 8)
+        width = field.type.bits // 8
+        return Numbers(width, field.type.primitive.startswith("float"), width)
 
     def nested(self, field: Field) -> Message:
         """The message that a field holds."""
@@ -79,14 +81,14 @@ class Tables:
         return self._types[field.type.message.type_name]
 
     def _only_numbers(self, message: Message) -> Numbers | None:
-        size, widths = 0, set[int]()
+        size, kinds = 0, set[tuple[int, bool]]()
         for field in message.fields:
             numbers = self.numbers(field)
             if numbers is None or (field.type.many and field.type.size is None):
                 return None
             size += numbers.size * (field.type.size or 1)
-            widths.add(numbers.width)
-        return Numbers(widths.pop(), size) if len(widths) == 1 else None
+            kinds.add((numbers.width, numbers.is_float))
+        return Numbers(*kinds.pop(), size) if len(kinds) == 1 else None
 
     def _depth(self, message: Message) -> int:
         return max(
@@ -118,7 +120,8 @@ class Tables:
         numbers = self.numbers(field)
         if numbers is not None:
             whole, last = str(numbers.size * max(count, 1)), data if count else ""
-            yield Row("NUMBERS", owner, data, label, min(count, 1), whole, numbers.width, last=last)
+            floats = int(numbers.is_float)
+            yield Row("NUMBERS", owner, data, label, min(count, 1), whole, numbers.width, floats, last)
         elif type_.message and not type_.many:
             yield from self._rows(self.nested(field), owner, f"{member}.", f"{label}.")
         elif type_.message:
@@ -194,7 +197,7 @@ def c_name(message: Message) -> str:
 
 
 def _merged(rows: Iterable[Row]) -> Iterator[Row]:
-    """One row for numbers of one width that stand beside each other in one struct.
+    """One row for numbers of one width, floats or not, that stand beside each other in one struct.
 
     Those of a nested struct that has others too are left apart: it may end with padding.
     """
@@ -212,4 +215,5 @@ def _merged(rows: Iterable[Row]) -> Iterator[Row]:
 
 def _can_join(first: Row, second: Row) -> bool:
     same_struct = first.last.rpartition(".")[0] == second.member.rpartition(".")[0]
-    return same_struct and first.width == second.width and first.owner == second.owner
+    kinds = ((row.owner, row.width, row.extra) for row in (first, second))
+    return same_struct and len(set(kinds)) == 1

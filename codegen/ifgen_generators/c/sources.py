@@ -96,6 +96,9 @@ class Sources:
         yield f"static inline size_t {name}_encoded_size(const {name} *message)"
         yield f"{{\n  return ifgen_cdr_encoded_size({name}_rows, message, NULL);\n}}"
         yield ""
+        yield f"static inline bool {name}_equal(const {name} *message, const {name} *other)"
+        yield f"{{\n  return ifgen_cdr_equal({name}_rows, message, other);\n}}"
+        yield ""
 
     def _declaration(self, field: Field) -> str:
         type_, room, name = field.type, self._bounds.of(field), field.names["c"]

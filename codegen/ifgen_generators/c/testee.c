@@ -245,6 +245,22 @@ static void print_constant(const testee_type *type, const char *id)
   }
 }
 
+static void print_equal(const testee_type *type, const char *id, const void *message)
+{
+  ifgen_cdr_failure failure;
+  size_t size;
+  uint8_t *bytes = payload_of(words[4], &size);
+  void *other = malloc(type->size);
+  type->init(other);
+  if (!ifgen_cdr_decode(type->rows, other, bytes, size, &failure)) {
+    print_failure(type, &failure, id);
+  } else {
+    printf("ok %s %d", id, ifgen_cdr_equal(type->rows, message, other));
+  }
+  free(other);
+  free(bytes);
+}
+
 static void with_payload(const testee_type *type, const char *operation, const char *id, void *message)
 {
   ifgen_cdr_failure failure;
@@ -259,6 +275,8 @@ static void with_payload(const testee_type *type, const char *operation, const c
   } else if (strcmp(operation, "dump") == 0) {
     printf("ok %s ", id);
     walk(type->fields, message, "", false);
+  } else if (strcmp(operation, "equal") == 0 && word_count > 4) {
+    print_equal(type, id, message);
   } else if (strcmp(operation, "bench") == 0 && word_count > 4) {
     printf("ok %s ", id);
     bench(type, message, bytes, size);
@@ -308,7 +326,7 @@ int testee_main(const testee_type *const *packages, const char *language)
       continue;
     }
     if (strcmp(words[0], "hello") == 0) {
-      printf("ok %s protocol=1 language=%s library=ifgen skip=equal", words[1], language);
+      printf("ok %s protocol=1 language=%s library=ifgen", words[1], language);
     } else {
       for (; type == NULL && *package != NULL; ++package) {
         const testee_type *candidate = *package;

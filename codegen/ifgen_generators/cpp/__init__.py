@@ -11,12 +11,15 @@ from ifgen.generators import File, Generator, Option, Request, Response
 from ifgen_generators import c_family
 from ifgen_generators.cpp.headers import Headers
 from ifgen_generators.cpp.testee import testee
+from ifgen_generators.shared import name_clashes
 
 _HERE: Final = Path(__file__).parent
 
 
 def generate(request: Request) -> Response:
-    """The headers, and that of the codec."""
+    """The headers, and that of the codec; errors where names clash."""
+    if findings := tuple(name_clashes(request.model, "cpp")):
+        return Response(findings=findings)
     return Response(tuple(_files(request)))
 
 

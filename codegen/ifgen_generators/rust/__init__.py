@@ -8,10 +8,13 @@ from ifgen.generators import File, Generator, Option, Request, Response
 
 
 def generate(request: Request) -> Response:
-    """The crate with all interfaces that are asked for, and those that they need."""
-    from ifgen_generators.rust.generator import Options, files  # `generators list` does without
+    """The crate with the interfaces that are asked for and those that they need; errors where names clash."""
+    from ifgen_generators.rust.generator import Options, clashes, files  # `generators list` does without
 
-    made = files(request.model, Options(**request.options))
+    options = Options(**request.options)
+    if findings := tuple(clashes(request.model, options)):
+        return Response(findings=findings)
+    made = files(request.model, options)
     return Response(tuple(File(path, text) for path, text in made.items()))
 
 

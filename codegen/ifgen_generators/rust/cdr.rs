@@ -1,5 +1,6 @@
 //! Reads and writes plain CDR (XCDR version 1) as Fast CDR does for ROS 2.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// A message that cannot be encoded, or a payload that holds no such message.
@@ -146,6 +147,11 @@ macro_rules! numbers {
             fn put(self, bytes: &mut [u8]) {
                 bytes.copy_from_slice(&self.to_le_bytes());
             }
+            // The byte order is asked once: each of both loops then becomes a copy of vectors.
+            fn list(bytes: &[u8], big: bool) -> Vec<Self> {
+                let chunks = bytes.chunks_exact(Self::SIZE);
+                if big { chunks.map(|chunk| Self::get(chunk, true)).collect() } else { chunks.map(|chunk| Self::get(chunk, false)).collect() }
+            }
         }
     )*};
 }
@@ -181,6 +187,17 @@ impl Number for bool {
 #[inline]
 pub fn align(p: usize, n: usize) -> usize {
     (p + n - 1) & !(n - 1)
+}
+
+/// Whether there is a NUL in a text. Most texts are so short that a call of the search takes longer than these loops.
+#[inline]
+fn has_nul(text: &[u8]) -> bool {
+    if text.len() > 64 {
+        return text.contains(&0);
+    }
+    let chunks = text.chunks_exact(8);
+    let rest = chunks.remainder().contains(&0);
+    rest || chunks.fold(false, |any, chunk| any | chunk.contains(&0))
 }
 
 /// Where a string ends that begins at `p`.
@@ -235,9 +252,7 @@ impl Writer {
     }
     /// Append a string.
     pub fn string(&mut self, s: &str, most: usize, field: &'static str) -> Result<()> {
-        if s.len() > most && s.chars().count() > most {
-            return Err(Error::Bound { field, most });
-        }
+        check(s, most, field)?;
         if s.as_bytes().contains(&0) {
             return Err(Error::Nul { field });
         }
@@ -248,9 +263,7 @@ impl Writer {
     }
     /// Append a wstring.
     pub fn wstring(&mut self, s: &str, most: usize, field: &'static str) -> Result<()> {
-        if s.len() > most && s.chars().count() > most {
-            return Err(Error::Bound { field, most });
-        }
+        check(s, most, field)?;
         self.count(s.encode_utf16().count(), u32::MAX as usize, field)?;
         for unit in s.encode_utf16() {
             self.out.extend_from_slice(&(unit as u32).to_le_bytes());
@@ -293,6 +306,18 @@ impl<'a, T: Number> Numbers<'a, T> {
     pub fn as_bytes(&self) -> &'a [u8] {
         self.bytes
     }
+}
+
+/// The text of bytes that are not UTF-8.
+#[cold]
+fn replaced(bytes: &[u8]) -> Cow<'_, str> {
+    String::from_utf8_lossy(bytes)
+}
+
+/// Refuse a text with too many characters.
+#[inline]
+fn check(s: &str, most: usize, field: &'static str) -> Result<()> {
+    if s.len() > most && s.chars().count() > most { Err(Error::Bound { field, most }) } else { Ok(()) }
 }
 
 /// A payload that is read.
@@ -360,27 +385,32 @@ impl<'a> Reader<'a> {
     fn text(&mut self) -> Result<&'a [u8]> {
         let size = u32::get(self.take(4, 4)?, self.big) as usize;
         match self.take(1, size)? {
-            [text @ .., 0] if !text.contains(&0) => Ok(text),
+            [text @ .., 0] if !has_nul(text) => Ok(text),
             bytes => Ok(bytes.split(|byte| *byte == 0).next().unwrap_or(bytes)),
         }
     }
     /// A string where it is in the payload. What is not UTF-8 is copied, with U+FFFD in its place.
-    #[inline]
-    pub fn str(&mut self, most: usize, field: &'static str) -> Result<std::borrow::Cow<'a, str>> {
+    // Inlined, so that a result of three words does not go through memory for each string.
+    #[inline(always)]
+    pub fn str(&mut self, most: usize, field: &'static str) -> Result<Cow<'a, str>> {
         let bytes = self.text()?;
         let s = match std::str::from_utf8(bytes) {
-            Ok(s) => std::borrow::Cow::Borrowed(s),
-            Err(_) => String::from_utf8_lossy(bytes),
+            Ok(s) => Cow::Borrowed(s),
+            Err(_) => replaced(bytes),
         };
-        if s.len() > most && s.chars().count() > most {
-            return Err(Error::Bound { field, most });
-        }
+        check(&s, most, field)?;
         Ok(s)
     }
     /// A string.
-    #[inline]
+    #[inline(always)]
     pub fn string(&mut self, most: usize, field: &'static str) -> Result<String> {
-        Ok(self.str(most, field)?.into_owned())
+        let bytes = self.text()?;
+        let s = match std::str::from_utf8(bytes) {
+            Ok(s) => s.to_owned(),
+            Err(_) => replaced(bytes).into_owned(),
+        };
+        check(&s, most, field)?;
+        Ok(s)
     }
     /// A wstring.
     pub fn wstring(&mut self, most: usize, field: &'static str) -> Result<String> {
@@ -388,9 +418,7 @@ impl<'a> Reader<'a> {
         let units: Option<Vec<u16>> =
             self.take(4, 4 * count)?.chunks_exact(4).map(|chunk| u32::get(chunk, self.big).try_into().ok()).collect();
         let s = units.and_then(|units| String::from_utf16(&units).ok()).ok_or(Error::Text { at: self.at })?;
-        if s.len() > most && s.chars().count() > most {
-            return Err(Error::Bound { field, most });
-        }
+        check(&s, most, field)?;
         Ok(s)
     }
     /// What a function reads, as many times as the array has elements.

@@ -2,34 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-from ifgen.model import Field, Interface
+from ifgen.model import Field, Interface, Message
 
-from ifgen_generators.rust.codec import key
+from ifgen_generators.rust.codec import borrows, key
 
 
-def canonical(interfaces: Sequence[Interface], crate: str) -> Iterator[str]:
-    """The code for each type: its canonical text, and the functions to call."""
+def canonical(
+    interfaces: Sequence[Interface], types: Mapping[str, Message], crate: str, views: bool
+) -> Iterator[str]:
+    """The code for each type: its canonical text, that of its view, and the functions to call."""
     messages = [message for interface in interfaces for message in interface.types]
+    paths = {message.type_name: f"{crate}::{message.type_name.replace('/', '::')}" for message in messages}
+    borrowed = {message.type_name for message in messages if views and borrows(message, types)}
     for message in messages:
-        path = f"{crate}::{message.type_name.replace('/', '::')}"
-        yield f"\nimpl Canonical for {path} {{\n"
+        path = paths[message.type_name]
+        yield from _dump(message, path)
+        if message.type_name in borrowed:
+            yield from _dump(message, f"{path}View<'_>")
         unused = "" if message.fields else "_"
-        yield f"    fn dump(&self, {unused}path: &str, {unused}out: &mut Vec<String>) {{\n"
+        yield f"impl Load for {path} {{\n    fn load({unused}words: &mut Words) -> Self {{\n        Self {{\n"
         for field in message.fields:
-            value = f"self.{key(field.name)}"
-            yield f'        {_wide(field, value)}.dump(&join(path, "{field.name}"), out);\n'
-        yield "    }\n"
-        yield f"    fn load({unused}words: &mut Words) -> Self {{\n        Self {{\n"
-        for field in message.fields:
-            load = "load_wide(words)" if field.type.primitive == "wstring" else "Canonical::load(words)"
+            load = "load_wide(words)" if field.type.primitive == "wstring" else "Load::load(words)"
             yield f"            {key(field.name)}: {load},\n"
         yield "        }\n    }\n}\n"
     yield "\nfn answer(op: &str, name: &str, words: &[&str]) -> Answer {\n    match name {\n"
     for message in messages:
-        path = f"{crate}::{message.type_name.replace('/', '::')}"
-        yield f'        "{message.type_name}" => of::<{path}>(op, words, |name| match name {{\n'
+        path = paths[message.type_name]
+        view = f"{path}{'View' if message.type_name in borrowed else ''}::decode(data).map(|m| all(&m))"
+        yield f'        "{message.type_name}" => of::<{path}>(op, words, |data| {view}, '
+        yield "|name| match name {\n"
         for constant in message.constants:
             value = f"{path}::{constant.name}"
             wide = "wide" if constant.type.primitive == "wstring" else "text"
@@ -41,6 +44,15 @@ def canonical(interfaces: Sequence[Interface], crate: str) -> Iterator[str]:
             if interface.kind != "message":
                 yield f'        "{type_name}" if op == "hash" => Answer::Ok("{type_hash}".into()),\n'
     yield '        _ => Answer::Skip("unknown-type"),\n    }\n}\n'
+
+
+def _dump(message: Message, path: str) -> Iterator[str]:
+    unused = "" if message.fields else "_"
+    yield f"\nimpl Dump for {path} {{\n"
+    yield f"    fn dump(&self, {unused}path: &str, {unused}out: &mut Vec<String>) {{\n"
+    for field in message.fields:
+        yield f'        {_wide(field, f"self.{key(field.name)}")}.dump(&join(path, "{field.name}"), out);\n'
+    yield "    }\n}\n"
 
 
 def _wide(field: Field, value: str) -> str:

@@ -1,7 +1,8 @@
 //! Answers requests of `ifgen conformance`, one a line.
 #![allow(clippy::all)]
 
-use interfaces::cdr::{Error, Message};
+use interfaces::cdr::{Error, Message, Number, Numbers, View};
+use std::borrow::Cow;
 use std::io::{BufRead, Write};
 use std::time::Instant;
 
@@ -22,8 +23,10 @@ impl From<Result<String, Error>> for Answer {
     }
 }
 
-trait Canonical {
+trait Dump {
     fn dump(&self, path: &str, out: &mut Vec<String>);
+}
+trait Load {
     fn load(words: &mut Words) -> Self;
 }
 
@@ -40,10 +43,16 @@ fn bytes(text: &str) -> Vec<u8> {
     (0..digits.len() / 2).map(|i| u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).unwrap()).collect()
 }
 
-fn text<T: Canonical + ?Sized>(value: &T) -> String {
+fn text<T: Dump + ?Sized>(value: &T) -> String {
     let mut out = Vec::new();
     value.dump("", &mut out);
     out.concat()[1..].into()
+}
+
+fn all<T: Dump>(message: &T) -> String {
+    let mut out = Vec::new();
+    message.dump("", &mut out);
+    out.join(" ")
 }
 
 fn next<'a>(words: &mut Words<'a>) -> &'a str {
@@ -52,8 +61,10 @@ fn next<'a>(words: &mut Words<'a>) -> &'a str {
 
 macro_rules! integers {
     ($($type:ty)*) => {$(
-        impl Canonical for $type {
+        impl Dump for $type {
             fn dump(&self, path: &str, out: &mut Vec<String>) { out.push(format!("{path}={self}")); }
+        }
+        impl Load for $type {
             fn load(words: &mut Words) -> Self { next(words).parse().unwrap() }
         }
     )*};
@@ -62,41 +73,66 @@ integers!(i8 u8 i16 u16 i32 u32 i64 u64);
 
 macro_rules! floats {
     ($($type:ty, $bits:ty, $digits:literal)*) => {$(
-        impl Canonical for $type {
+        impl Dump for $type {
             fn dump(&self, path: &str, out: &mut Vec<String>) { out.push(format!(concat!("{}={:0", $digits, "x}"), path, self.to_bits())); }
+        }
+        impl Load for $type {
             fn load(words: &mut Words) -> Self { Self::from_bits(<$bits>::from_str_radix(next(words), 16).unwrap()) }
         }
     )*};
 }
 floats!(f32, u32, "8" f64, u64, "16");
 
-impl Canonical for bool {
+impl Dump for bool {
     fn dump(&self, path: &str, out: &mut Vec<String>) { out.push(format!("{path}={}", *self as u8)); }
+}
+impl Load for bool {
     fn load(words: &mut Words) -> Self { next(words) == "1" }
 }
-impl Canonical for String {
+impl Dump for str {
     fn dump(&self, path: &str, out: &mut Vec<String>) { out.push(format!("{path}={}", hex(self.as_bytes()))); }
+}
+impl Dump for &str {
+    fn dump(&self, path: &str, out: &mut Vec<String>) { str::dump(self, path, out); }
+}
+impl Dump for Cow<'_, str> {
+    fn dump(&self, path: &str, out: &mut Vec<String>) { str::dump(self, path, out); }
+}
+impl Dump for String {
+    fn dump(&self, path: &str, out: &mut Vec<String>) { str::dump(self, path, out); }
+}
+impl Load for String {
     fn load(words: &mut Words) -> Self { String::from_utf8(bytes(next(words))).unwrap() }
 }
-impl Canonical for &str {
-    fn dump(&self, path: &str, out: &mut Vec<String>) { out.push(format!("{path}={}", hex(self.as_bytes()))); }
-    fn load(_words: &mut Words) -> Self { unreachable!() }
-}
-impl<T: Canonical> Canonical for Vec<T> {
+impl<T: Dump> Dump for [T] {
     fn dump(&self, path: &str, out: &mut Vec<String>) {
-        out.push(format!("{path}#={}", self.len()));
         for (i, item) in self.iter().enumerate() { item.dump(&format!("{path}[{i}]"), out); }
     }
+}
+impl<T: Dump> Dump for Vec<T> {
+    fn dump(&self, path: &str, out: &mut Vec<String>) {
+        out.push(format!("{path}#={}", self.len()));
+        self.as_slice().dump(path, out);
+    }
+}
+impl<T: Dump + Number> Dump for Numbers<'_, T> {
+    fn dump(&self, path: &str, out: &mut Vec<String>) { self.to_vec().dump(path, out); }
+}
+impl<T: Load> Load for Vec<T> {
     fn load(words: &mut Words) -> Self {
         let count: usize = next(words).parse().unwrap();
         (0..count).map(|_| T::load(words)).collect()
     }
 }
-impl<T: Canonical, const N: usize> Canonical for [T; N] {
-    fn dump(&self, path: &str, out: &mut Vec<String>) {
-        for (i, item) in self.iter().enumerate() { item.dump(&format!("{path}[{i}]"), out); }
-    }
+impl<T: Dump, const N: usize> Dump for [T; N] {
+    fn dump(&self, path: &str, out: &mut Vec<String>) { self.as_slice().dump(path, out); }
+}
+impl<T: Load, const N: usize> Load for [T; N] {
     fn load(words: &mut Words) -> Self { std::array::from_fn(|_| T::load(words)) }
+}
+
+fn wide(text: &str) -> String {
+    text.encode_utf16().map(|unit| format!("{unit:04x}")).collect()
 }
 
 // A wstring has the type of a string, and another text.
@@ -107,8 +143,7 @@ trait WideText: Sized {
 }
 impl WideText for String {
     fn dump_wide(&self, path: &str, out: &mut Vec<String>) {
-        let units: String = self.encode_utf16().map(|unit| format!("{unit:04x}")).collect();
-        out.push(format!("{path}={units}"));
+        out.push(format!("{path}={}", wide(self)));
     }
     fn read_wide(words: &mut Words) -> Self {
         let units: Vec<u16> = bytes(next(words)).chunks(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect();
@@ -136,21 +171,27 @@ impl<T: WideText> Wide<&T> {
 }
 fn load_wide<T: WideText>(words: &mut Words) -> T { T::read_wide(words) }
 
-fn of<M: Message + Canonical + Default + PartialEq>(
-    op: &str, words: &[&str], constant: impl Fn(&str) -> Option<String>,
+fn of<M: Message + Dump + Load + Default + PartialEq>(
+    op: &str, words: &[&str], view: impl Fn(&[u8]) -> Result<String, Error>, constant: impl Fn(&str) -> Option<String>,
 ) -> Answer {
     let payload = |i: usize| bytes(words[i]);
+    let decoded = |i: usize| {
+        let data = payload(i);
+        let message = M::decode(&data);
+        assert_eq!(message.as_ref().map(all), view(&data).as_ref().map(Clone::clone), "the view of a message differs");
+        message
+    };
     match op {
         "hash" => Answer::Ok(M::TYPE_HASH.into()),
         "default" => M::default().encode().map(|data| hex(&data)).into(),
         "constant" => constant(words[0]).map_or(Answer::Skip("constant"), Answer::Ok),
-        "recode" => M::decode(&payload(0)).and_then(|m| m.encode()).map(|data| hex(&data)).into(),
-        "size" => M::decode(&payload(0)).map(|m| m.encoded_len().to_string()).into(),
-        "equal" => match (M::decode(&payload(0)), M::decode(&payload(1))) {
+        "recode" => decoded(0).and_then(|m| m.encode()).map(|data| hex(&data)).into(),
+        "size" => decoded(0).map(|m| m.encoded_len().to_string()).into(),
+        "equal" => match (decoded(0), decoded(1)) {
             (Ok(one), Ok(other)) => Answer::Ok(((one == other) as u8).to_string()),
             (Err(error), _) | (_, Err(error)) => Answer::Refused(error),
         },
-        "dump" => M::decode(&payload(0)).map(|m| { let mut out = Vec::new(); m.dump("", &mut out); out.join(" ") }).into(),
+        "dump" => decoded(0).map(|m| all(&m)).into(),
         "load" => {
             let mut leaves = words.iter().copied().filter(|word| !word.is_empty());
             M::load(&mut leaves).encode().map(|data| hex(&data)).into()

@@ -8,9 +8,12 @@ from ifgen.generators import File, Generator, Option, Request, Response
 
 
 def generate(request: Request) -> Response:
-    """The modules of all interfaces that are asked for, and of those that they need."""
-    from ifgen_generators.typescript.generator import Options, files  # `generators list` does without
+    """The modules of the interfaces that are asked for and of what they need; errors where names clash."""
+    from ifgen_generators.shared import name_clashes  # `generators list` does without
+    from ifgen_generators.typescript.generator import MEMBERS, Options, files  # the same
 
+    if findings := tuple(name_clashes(request.model, "typescript", MEMBERS)):
+        return Response(findings=findings)
     made = files(request.model, Options(**request.options))
     return Response(tuple(File(path, text) for path, text in made.items()))
 

@@ -27,6 +27,10 @@ export interface DecodeOptions {
   copy?: boolean;
 }
 
+/** Some of the values of a message. Here and below, names that no message can hide. */
+export type Some<T> = Partial<T>;
+export type Members = Record<string, unknown>;
+
 /** The value of a message's name: what can be done with messages of that type. */
 export interface MessageType<T> {
   /** `pkg/msg/Name`. */
@@ -35,11 +39,13 @@ export interface MessageType<T> {
   readonly typeHash: string;
   readonly fields: readonly FieldType[];
   /** A new message: default values, except for those given. */
-  create(values?: Partial<T>): T;
+  create(values?: Some<T>): T;
   /** The payload, with its 4-byte header. Throws EncodeError. */
   encode(message: T): Uint8Array;
   /** The message in a payload of either byte order. Throws DecodeError. */
   decode(payload: Uint8Array, options?: DecodeOptions): T;
+  /** Whether all fields are equal: by IEEE 754, NaN is not equal to itself, and -0 is equal to 0. */
+  equals(a: T, b: T): boolean;
 }
 
 const SMALL = 1 << 16;
@@ -590,3 +596,14 @@ function wrong({ type, bound }: FieldType, value: any, at: string): string | und
 
 /** Whether 64-bit integers are numbers in messages: an option of the generator. */
 export const INT64_NUMBER: boolean = false;
+
+/** Whether all fields of two messages are equal. */
+export function equals<T>(type: MessageType<T>, a: T, b: T): boolean {
+  return type.fields.every(({ name, type, array }) => {
+    const one = a[name as keyof T] as any;
+    const other = b[name as keyof T] as any;
+    const same = (x: any, y: any) => (typeof type === "string" ? x === y : equals(type, x, y));
+    if (array === undefined) return same(one, other);
+    return one.length === other.length && one.every((element: any, i: number) => same(element, other[i]));
+  });
+}

@@ -46,14 +46,14 @@ class Style:
     def array(self, primitive: str, elements: str) -> str:
         """An array as messages have it, from a typed one."""
         if self.is_big(primitive):
-            return f"Array.from({elements}, Number)"
-        return f"Array.from({elements})" if self.plain_arrays and primitive != "bool" else elements
+            return f"globalThis.Array.from({elements}, Number)"
+        return f"globalThis.Array.from({elements})" if self.plain_arrays and primitive != "bool" else elements
 
     def typed(self, primitive: str, array: str) -> str:
         """The array to write, from that in a message."""
         if not self.is_big(primitive):
             return array
-        return f"Big{'Uint' if primitive == 'uint64' else 'Int'}64Array.from({array}, BigInt)"
+        return f"globalThis.Big{'Uint' if primitive == 'uint64' else 'Int'}64Array.from({array}, BigInt)"
 
 
 @dataclass(slots=True)

@@ -111,7 +111,7 @@ function bench(type: MessageType<any>, payload: Uint8Array, n: number): string {
 }
 
 function answer(op: string, name: string, words: string[]): string {
-  if (op === "hello") return "protocol=1 language=typescript library=ifgen skip=size,equal";
+  if (op === "hello") return "protocol=1 language=typescript library=ifgen skip=size";
   if (op === "hash" && name in hashes) return hashes[name]!;
   const type: any = types[name];
   if (type === undefined) throw new Skip("unknown-type");
@@ -128,6 +128,8 @@ function answer(op: string, name: string, words: string[]): string {
       return [...leaves(type, type.decode(bytes(words[0]!)), "")].join(" ");
     case "load":
       return hex(type.encode(loaded(type, words[Symbol.iterator]())));
+    case "equal":
+      return String(Number(type.equals(type.decode(bytes(words[0]!)), type.decode(bytes(words[1]!)))));
     case "bench":
       return bench(type, bytes(words[0]!), Number(words[1]));
     default:

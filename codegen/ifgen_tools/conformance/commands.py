@@ -5,10 +5,14 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 from ifgen.command_kit.options import EXISTING_FILE, FOLDER, OUTPUT_FILE
 from ifgen.command_kit.tool import ToolCommand
+
+if TYPE_CHECKING:
+    from ifgen_tools.conformance.testee import Testee
 
 # Late imports: the suite reads definitions.
 
@@ -39,6 +43,13 @@ _MOST = 20  # failures that are printed
     show_default=True,
     help="The longest time that a reply may take.",
 )
+@click.option(
+    "--random",
+    "count",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="Instead of the cases, compare N random messages of each type, as random/PKG/msg/NAME.",
+)
 @click.option("--junit", metavar="FILE", type=OUTPUT_FILE, help="Write the results as JUnit XML.")
 @click.option("--json", "json_file", metavar="FILE", type=OUTPUT_FILE, help="Write the results as JSON.")
 def conformance(
@@ -47,6 +58,7 @@ def conformance(
     failures: Path | None,
     folder: Path | None,
     timeout: float,
+    count: int | None,
     junit: Path | None,
     json_file: Path | None,
 ) -> int:
@@ -61,6 +73,10 @@ def conformance(
     from ifgen_tools.conformance.testee import Testee
 
     program = Testee(testee, timeout)
+    if count is not None:
+        if failures or junit or json_file:
+            raise click.UsageError("--random has no cases for --failures, --junit and --json")
+        return _compare_random(program, folder, count, only)
     expectations = read_expectations(failures) if failures else []
     suite = Suite(only=only) if folder is None else Suite(folder, only)
     try:
@@ -88,3 +104,20 @@ def conformance(
     if json_file:
         json_file.write_text(json.dumps(report.as_json(), indent=1) + "\n", encoding="utf-8")
     return 0 if report.is_right else 1
+
+
+def _compare_random(testee: Testee, folder: Path | None, count: int, only: tuple[str, ...]) -> int:
+    """Print the differences and their number; the exit code."""
+    from ifgen_tools.conformance import cases
+    from ifgen_tools.conformance.random_messages import Comparison, compare
+
+    result = Comparison()
+    try:
+        definitions = cases.definitions(folder or cases.folder())
+        for number, sentence in enumerate(compare(testee, definitions, count, only, result)):
+            if number < _MOST:
+                print(sentence)
+    finally:
+        testee.close()
+    print(result.line)
+    return 0 if result.is_right else 1

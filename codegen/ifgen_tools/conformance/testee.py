@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from threading import Thread
+from typing import IO, Final, Literal
 
 from ifgen.command_kit.tool import ToolError
 
@@ -30,6 +31,15 @@ class Reply:
     def text(self) -> str:
         """One line."""
         return f"{self.verdict} {self.data}".rstrip()
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A question for a testee."""
+
+    op: str
+    type_name: str
+    arguments: tuple[str, ...] = ()
 
 
 class Testee:
@@ -75,6 +85,32 @@ class Testee:
             code = self.close()
             return Reply("crash", f"exit code {code}")
         return self._parsed(line)
+
+    def ask_all(self, requests: Sequence[Request]) -> list[Reply]:
+        """Send requests without waiting between them. Those from a crash on are asked again, one by one."""
+        if self._process is None:
+            self.hello()
+        process = self._process
+        assert process is not None and process.stdin is not None
+        lines = [
+            " ".join((request.op, str(number), request.type_name, *request.arguments))
+            for number, request in enumerate(requests, self._next + 1)
+        ]
+        writer = Thread(target=_write, args=(process.stdin, "\n".join((*lines, "")).encode()))
+        writer.start()
+        replies: list[Reply] = []
+        while len(replies) < len(requests) and self._process is process:
+            if not (line := self._line(self._timeout)):
+                break
+            self._next += 1
+            replies.append(self._parsed(line))  # which ends the program if the line is no reply
+        if len(replies) < len(requests):
+            process.kill()  # before its pipe is closed: a program that hangs would keep the writer
+        writer.join()
+        if len(replies) < len(requests):
+            self.close()
+        rest = requests[len(replies) :]
+        return replies + [self.ask(request.op, request.type_name, *request.arguments) for request in rest]
 
     def _parsed(self, line: str) -> Reply:
         word, _, rest = line.partition(" ")
@@ -132,3 +168,10 @@ class Testee:
             return None
         finally:
             process.stdout.close()
+
+
+def _write(pipe: IO[bytes], data: bytes) -> None:
+    """Send requests in a thread of its own; a program that ended does not take them."""
+    with suppress(OSError, ValueError):
+        pipe.write(data)
+        pipe.flush()
