@@ -11,7 +11,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
-from ifgen.pipeline.generators import kit
+from ifgen.pipeline.generators import find, kit
 
 from ..conftest import Run, write
 
@@ -100,6 +100,29 @@ def test_a_new_generator_passes_its_own_tests(ifgen: Run, tmp_path: Path) -> Non
         assert done.returncode == code, done.stdout + done.stderr
     golden = tmp_path / "acme-docs/tests/golden/trap_msgs/msg/units.md"
     assert "| `speed` | `float64` |" in golden.read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("original", SHIPPED)
+def test_a_copy_of_ours_makes_the_same_files(
+    ifgen: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, original: str
+) -> None:
+    name = f"copy-of-{original}"
+    assert ifgen("generators", "new", name, "--from", original).code == 0
+    info = tmp_path / f"{name}/copy-0.1.0.dist-info"
+    write(info / "METADATA", "Metadata-Version: 2.1\nName: copy\nVersion: 0.1.0\n")
+    module = name.replace("-", "_")
+    write(info / "entry_points.txt", f"[ifgen.generators]\n{name} = {module}:GENERATOR\n")
+    monkeypatch.syspath_prepend(tmp_path / name)
+    find.installed.cache_clear()
+    options = ["--options", BOUNDS] if original == "c" else []
+    try:
+        golden = ["--golden", tmp_path / "golden", *options]
+        assert ifgen("generators", "test", original, *golden, "--update").code == 0
+        done = ifgen("generators", "test", name, *golden)
+        assert (done.code, done.err) == (0, "")
+    finally:
+        find.installed.cache_clear()
 
 
 def test_the_five_minutes_of_the_page(ifgen: Run) -> None:

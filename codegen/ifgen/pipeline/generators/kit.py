@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from typing import Any, Final, cast
 
 from ifgen import generators as public
-from ifgen.config.customization import Target
+from ifgen.config.customization import Customization, Output, Target
 from ifgen.diagnostics import Diagnostic, InputError
 from ifgen.generators import protocol
 from ifgen.pipeline.generators import find
@@ -55,6 +55,27 @@ def _text(text: str) -> str:
     return text
 
 
+def copy_of(original: str, name: str, module: str) -> dict[str, bytes]:
+    """The files of an installed generator, as those of another name in another module.
+
+    Raises InputError if there is none.
+    """
+    find.named(original)
+    package = find.installed()[original].module
+    [*_, place] = find.sources(Target(name, Path(), use=original))
+    paths = [place] if place.is_file() else sorted(place.rglob("*"))
+    found: dict[str, bytes] = {}
+    for path in paths:
+        if path.is_file() and "__pycache__" not in path.parts:
+            inside = "__init__.py" if path == place else path.relative_to(place).as_posix()
+            data = path.read_bytes()
+            if path.suffix == ".py":
+                text = re.sub(rf"\b{re.escape(package)}\b", module, data.decode())
+                data = re.sub(rf"""\bname=(["']){original}\1""", f'name="{name}"', text).encode()
+            found[inside] = data
+    return found
+
+
 def write_corpus(folder: Path) -> None:
     """Write the corpus into a folder, for tools that compile what a generator makes of it."""
     transaction.apply([(folder / path, text.encode()) for path, text in corpus().items()], folder)
@@ -67,11 +88,12 @@ def test(target: Target, golden: Path | None = None, *, update: bool = False) ->
         write_corpus(folder)
         built = load_built_model(folder, with_deps=False)
         target = replace(target, unsupported="skip", out=folder / "out")
-        find.find(target)  # whose errors are about all of it
+        generator = find.find(target)  # whose errors are about all of it
         try:
             files, diagnostics = _files(target, built)
         except InputError as error:
             return Report(("it refuses the corpus",), error.diagnostics, {})
+        diagnostics = (*diagnostics, *_about_templates(generator))
         problems = [*_unequal(files, _files(target, built)[0], "a second run makes other files")]
         if target.command:
             problems += _with_unknown_members(target, built, files)
@@ -85,6 +107,15 @@ def test(target: Target, golden: Path | None = None, *, update: bool = False) ->
         else:
             problems += _unequal(_read(golden), files, f"not as in {golden}; --update accepts it")
     return Report(tuple(problems), diagnostics, files, updated)
+
+
+def _about_templates(generator: public.Generator) -> Iterator[Diagnostic]:
+    """The warnings about the templates of a set. Errors have stopped it already."""
+    if generator.templates is not None:
+        from ifgen.generator_py.templates.render import look_for_problems  # jinja2 takes long to load
+
+        outputs = tuple(Output(of.template, of.template, of.path, of.per) for of in generator.outputs)
+        yield from look_for_problems(Customization(generator.templates, generator.filters, outputs))
 
 
 def _files(target: Target, built: BuiltModel) -> tuple[Files, tuple[Diagnostic, ...]]:
