@@ -47,7 +47,7 @@ def print_list() -> int:
 def describe(name: str, as_json: bool) -> int:
     """Show a generator: its options, and what it does not support."""
     from ifgen.generators import FEATURES, protocol
-    from ifgen.pipeline.generators.find import named, templates_of
+    from ifgen.pipeline.generators.find import named
 
     found = named(name)
     if as_json:
@@ -62,8 +62,10 @@ def describe(name: str, as_json: bool) -> int:
         if option.help:
             print(f"      {option.help}")
     if found.templates is not None:
+        from ifgen.generator_py.templates.catalogue import blocks_of
+
         print("\ntemplates, which `templates` of a target may replace:")
-        for template, blocks in templates_of(found.templates).items():
+        for template, blocks in blocks_of(found.templates).items():
             print(f"  {template}" + (f"  (blocks: {', '.join(blocks)})" if blocks else ""))
     supported = FEATURES if found.features is None else found.features
     if missing := [words for feature, words in FEATURES.items() if feature not in supported]:

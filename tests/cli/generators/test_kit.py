@@ -73,6 +73,10 @@ def test_what_the_kit_finds(ifgen: Run, tmp_path: Path, problem: str) -> None:
 def test_list_and_describe(ifgen: Run) -> None:
     assert re.search(r"^json-schema +JSON Schema", ifgen("generators", "list").out, re.MULTILINE)
     assert 'int64 = "number"  ("number" | "string")' in ifgen("generators", "describe", "json-schema").out
+    assert (
+        "  model.py.j2  (blocks: imports, bases, additions)\n"
+        in ifgen("generators", "describe", "pydantic").out
+    )
     assert json.loads(ifgen("generators", "describe", "json-schema", "--json").out)["model"] == "1.0"
     assert "did you mean 'json-schema'?" in ifgen("generators", "describe", "json-shema").err
 

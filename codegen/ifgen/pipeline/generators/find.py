@@ -77,18 +77,6 @@ def _sources(entry_point: EntryPoint) -> tuple[Path, ...]:
     return (path.parent if path.name == "__init__.py" else path,)
 
 
-def templates_of(folder: Path) -> dict[str, list[str]]:
-    """The templates of a generator, each with the names of its blocks."""
-    import jinja2  # takes long to load, and few need it
-    import jinja2.nodes
-
-    found: dict[str, list[str]] = {}
-    for path in sorted(folder.rglob("*.j2")):
-        tree = jinja2.Environment().parse(path.read_text(encoding="utf-8"))
-        found[path.relative_to(folder).as_posix()] = [of.name for of in tree.find_all(jinja2.nodes.Block)]
-    return found
-
-
 def sources(target: Target) -> tuple[Path, ...]:
     """The files and folders whose change means that a target has to be made again."""
     own = () if target.templates is None else (target.templates,)
