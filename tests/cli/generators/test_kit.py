@@ -14,6 +14,7 @@ import pytest
 from ifgen.pipeline.generators import find, kit
 
 from ..conftest import Run, write
+from .conftest import Package
 
 SHIPPED = sorted(
     found.name for found in entry_points(group="ifgen.generators") if found.value.startswith("ifgen_")
@@ -23,7 +24,9 @@ BOUNDS = json.dumps({"bounds": {"*.string": 32, "*.wstring": 32, "*.sequence": 4
 """What C needs for fields without a bound."""
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name == "mermaid" else pytest.mark.slow) for name in SHIPPED]
+)
 def test_what_we_ship_passes_our_own_kit(ifgen: Run, name: str) -> None:
     done = ifgen("generators", "test", name, *(["--options", BOUNDS] if name == "c" else []))
     assert (done.code, done.err) == (0, "")
@@ -39,6 +42,7 @@ def test_the_corpus_has_every_kind_of_trap(ifgen: Run, tmp_path: Path) -> None:
     assert len(files["trap_msgs/msg/Large.msg"].splitlines()) == 140
 
 
+@pytest.mark.slow
 def test_golden_files(ifgen: Run, tmp_path: Path) -> None:
     golden = ("generators", "test", "json-schema", "--golden", tmp_path / "golden")
     assert ifgen(*golden, "--update").code == 0
@@ -55,10 +59,14 @@ def test_golden_files(ifgen: Run, tmp_path: Path) -> None:
 TRAPS = {
     "a second run makes other files": "import os; answer['files'][0]['text'] = str(os.getpid())",
     "unknown members of the model change its files": "answer['files'][0]['text'] = str(len(request['model']))",
+    "another locale, PYTHONHASHSEED, time zone or working directory makes other files": (
+        "import os; answer['files'][0]['text'] = os.environ.get('TZ', '')"
+    ),
     "it makes no files": "answer['files'] = []",
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", TRAPS)
 def test_what_the_kit_finds(ifgen: Run, tmp_path: Path, problem: str) -> None:
     write(
@@ -68,6 +76,34 @@ def test_what_the_kit_finds(ifgen: Run, tmp_path: Path, problem: str) -> None:
     )
     done = ifgen("generators", "test", "--command", f"{sys.executable} generate.py")
     assert done.code == 1 and f"error: {problem}" in done.err.replace("a: ", "")
+
+
+ELSEWHERE = """
+    from pathlib import Path
+    from ifgen.generators import File, Generator, Response
+
+    def generate(request):
+        return Response((File("a", EXPRESSION),))
+
+    GENERATOR = Generator(name="theirs", version="1.0", generate=generate)
+    """
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "str(Path.cwd())",
+        "str({*'abcdefgh'})",
+        "Path(__file__).with_name('a.txt').read_text()",
+        "__import__('locale').getencoding()",
+    ],
+)
+def test_the_kit_finds_what_depends_on_the_machine(ifgen: Run, package: Package, expression: str) -> None:
+    package(ELSEWHERE.replace("EXPRESSION", expression), **{"a.txt": "\N{BULLET}"})
+    done = ifgen("generators", "test", "theirs")
+    assert done.code == 1 and "another locale, PYTHONHASHSEED, time zone or working directory" in done.err
+    assert "Traceback" not in done.err
 
 
 def test_list_and_describe(ifgen: Run) -> None:

@@ -7,7 +7,10 @@ a folder of golden ones has them.
 from __future__ import annotations
 
 import json
+import os
 import re
+import subprocess
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from difflib import unified_diff
@@ -17,9 +20,10 @@ from typing import Any, Final, cast
 
 from ifgen import generators as public
 from ifgen.config.customization import Customization, Output, Target
-from ifgen.diagnostics import Diagnostic, InputError
+from ifgen.diagnostics import Diagnostic, InputError, printable
 from ifgen.generators import protocol
 from ifgen.pipeline.generators import find
+from ifgen.pipeline.generators.programs import failure
 from ifgen.pipeline.generators.run import run_targets
 from ifgen.pipeline.model import BuiltModel, load_built_model
 from ifgen.reading.storage import MAX_GENERATED, read_limited
@@ -29,6 +33,12 @@ CORPUS: Final = Path(public.__file__).with_name("corpus.txt")
 _HEAD: Final = re.compile(r"^==> (\S+) <==\n", re.MULTILINE)
 _REPEATED: Final = re.compile(r"\* (\d+)\n(.*)", re.DOTALL)
 _MOST_LINES: Final = 30
+_ELSEWHERE: Final = "another locale, PYTHONHASHSEED, time zone or working directory makes other files"
+_OTHER: Final = {
+    **{"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+    **{"PYTHONHASHSEED": "2718", "TZ": "Asia/Kathmandu"},
+}
+_CODE: Final = "import sys; from ifgen.pipeline.generators import kit; kit.make_elsewhere(*sys.argv[1:])"
 
 Files = Mapping[str, str | bytes]
 
@@ -95,6 +105,7 @@ def test(target: Target, golden: Path | None = None, *, update: bool = False) ->
             return Report(("it refuses the corpus",), error.diagnostics, {})
         diagnostics = (*diagnostics, *_about_templates(generator))
         problems = [*_unequal(files, _files(target, built)[0], "a second run makes other files")]
+        problems += _unequal(files, _made_elsewhere(target, folder), _ELSEWHERE)
         if target.command:
             problems += _with_unknown_members(target, built, files)
         if not files:
@@ -121,6 +132,43 @@ def _about_templates(generator: public.Generator) -> Iterator[Diagnostic]:
 def _files(target: Target, built: BuiltModel) -> tuple[Files, tuple[Diagnostic, ...]]:
     result = run_targets([target], built)
     return {name: of for folder in result.folders for name, of in folder.files.items()}, result.diagnostics
+
+
+def make_elsewhere(use: str, command: str, options: str, base: str, output: str) -> None:
+    """Run a generator on the corpus, as `test` asks another process to, and write what it makes."""
+    words = tuple(json.loads(command))
+    with TemporaryDirectory(prefix="ifgen-corpus-") as name:
+        folder = Path(name)
+        write_corpus(folder)
+        target = Target(
+            "test",
+            folder / "out",
+            use or None,
+            words,
+            json.loads(options),
+            unsupported="skip",
+            base=Path(base),
+        )
+        try:
+            files, _ = _files(target, load_built_model(folder, with_deps=False))
+        except InputError as error:
+            raise SystemExit("\n".join(of.message for of in error.diagnostics)) from None
+        _update(Path(output), files)
+
+
+def _made_elsewhere(target: Target, folder: Path) -> Files:
+    """The files of another process, in whose environment everything is different that must not matter."""
+    cwd, output = folder / "elsewhere", folder / "made"
+    cwd.mkdir()
+    words = [json.dumps(target.command), json.dumps(target.options), str(target.base.absolute()), str(output)]
+    environment = {**os.environ, **_OTHER, "PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))}
+    command = [sys.executable, "-c", _CODE, target.use or "", *words]
+    done = subprocess.run(
+        command, cwd=cwd, env=environment, capture_output=True, text=True, errors="replace", check=False
+    )
+    if done.returncode:
+        raise InputError([failure(None, f"{_ELSEWHERE}: it fails", printable(done.stderr).strip()[-1000:])])
+    return _read(output)
 
 
 def _with_unknown_members(target: Target, built: BuiltModel, files: Files) -> Iterator[str]:
