@@ -47,9 +47,9 @@ def imports(interface: Interface, package: str, converts: bool) -> list[str]:
     types = [field.type for message in interface.messages for field in message.fields]
     constants = [of.type for message in interface.messages for of in message.constants]
     texts = [*map(annotation, types), *map(annotation_of_constant, constants)]
-    words = {word for text in texts for word in re.findall(r"\w+", text)} | (
-        {"classmethod"} if converts else set()
-    )
+    words = {str(word) for text in texts for word in re.findall(r"\w+", text)}
+    if converts:
+        words.add("classmethod")
     names = [*(["Annotated"] if "Annotated" in words else []), *(["ClassVar"] if constants else [])]
     hidden = taken(interface)
 
