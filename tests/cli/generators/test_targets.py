@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 import pytest
+from ifgen.pipeline.generators import programs
 
 from ..conftest import Run, write
 from .conftest import Package, Program
@@ -171,24 +172,54 @@ BAD = {
         "'severity' of a diagnostic",
     ),
     "python": ("answer['files'][0] = {'path': 'x.py', 'text': '\\ndef x('}", "makes a broken file: x.py:2: "),
+    "half": ("print(json.dumps(answer)[:-9]); sys.exit()", "answered 'generate' with what is no JSON: '{"),
+    "nothing": ("sys.exit()", "answered 'generate' with what is no JSON: ''"),
+    "bytes": ("sys.stdout.buffer.write(bytes([255, 254])); sys.exit()", "with what is no JSON"),
+    "megabytes": ("print('x' * 5_000_000); sys.exit()", "with what is no JSON: 'xxxxxxxx"),
+    "endless": ("while True: print('x' * 100_000)", "answered 'generate' with more than "),
+    "deep": ("print('[' * 100_000); sys.exit()", "with what is no JSON: '[[[[[["),
+    "hang": ("import time; time.sleep(60)", "did not answer '"),
+    # What it starts has its pipes, and ends with it.
+    "child": (
+        "import subprocess; subprocess.Popen(['sleep', '60']); sys.exit()",
+        "did not answer '",
+    ),
+    "killed": ("import os; os.kill(os.getpid(), 9)", "ended with exit code -9 when asked to generate"),
+    "inside": ("answer['files'][0]['path'] = 'a/../../x'", "wants to write 'a/../../x': that is outside"),
+    "network": ("answer['files'][0]['path'] = '//host/x'", "wants to write '//host/x': that is"),
+    "folder": ("answer['files'][0]['path'] = 'a/'", "that is not the plain path of a file"),
+    "none": ("answer['files'][0]['path'] = ''", "that is not the plain path of a file"),
+    "nul": ("answer['files'][0]['path'] = 'a\\0b'", "that is not the plain path of a file"),
+    "surrogate": ("answer['files'][0]['text'] = '\\ud800'", "makes a broken file: a_msgs/msg/Dot.txt"),
+    "both kinds": (
+        "answer['files'] += [{'path': 'a_msgs/msg/Dot.txt/x', 'text': ''}]",
+        "writes a_msgs/msg/Dot.txt/x, but a_msgs/msg/Dot.txt is a file, too",
+    ),
+    "symlink": ("answer['files'][0]['path'] = 'link/x.txt'", "out/link is "),
+    "element": (
+        "answer['diagnostics'] = [{'severity': 'warning', 'message': 'hm', 'element': 'no/msg/Such'}]",
+        "names an element that is not in the model: 'no/msg/Such'",
+    ),
 }
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_a_bad_answer_is_one_error_and_nothing_is_written(ifgen: Run, program: Program, name: str) -> None:
+def test_a_bad_answer_is_one_error_and_old_files_stay(
+    ifgen: Run, program: Program, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
     body, message = BAD[name]
-    program(body)
+    program("answer['files'] += [{'path': 'old.txt', 'text': 'old'}]")
+    assert ifgen("generate").code == 0
+    Path("elsewhere").mkdir()
+    Path("out/link").symlink_to(Path("elsewhere").absolute())
+    before = {path: path.read_bytes() for path in sorted(Path("out").rglob("*")) if path.is_file()}
+    monkeypatch.setattr(programs, "MAX_GENERATED", 10_000_000)
+    program(body, time_limit=1 if name in {"hang", "child"} else 60)
     done = ifgen("generate")
     assert done.code == 1 and done.err.count("error[") == 1
-    assert message in done.err and "'mine'" in done.err
-    assert not Path("out").exists()
-
-
-def test_a_program_that_hangs(ifgen: Run, program: Program) -> None:
-    # What it starts has its pipes, and ends with it.
-    program("import subprocess, time; subprocess.Popen(['sleep', '60']); time.sleep(60)", time_limit=0.5)
-    done = ifgen("generate")
-    assert done.code == 1 and "did not answer 'generate' within 0.5 s" in done.err
+    assert message in done.err and ("'mine'" in done.err or name == "symlink") and len(done.err) < 3000
+    assert {path: path.read_bytes() for path in sorted(Path("out").rglob("*")) if path.is_file()} == before
+    assert not list(Path("elsewhere").iterdir()) and not Path("x").exists()
 
 
 def test_a_program_that_is_not_there(ifgen: Run, program: Program) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import TypeVar
@@ -42,7 +42,7 @@ def run_targets(
     problems: list[Diagnostic] = []
     found: list[Diagnostic] = []
     made: dict[Path, dict[str, str | bytes]] = {}
-    owners: dict[str, str] = {}
+    owners: dict[str, tuple[Target, File]] = {}
     for target in targets:
         try:
             files, diagnostics = _Run(target, built, ask).files()
@@ -53,14 +53,26 @@ def run_targets(
         folder = made.setdefault(target.out, {})
         for file in files:
             path = str((target.out / file.path).absolute()).casefold()  # one file on some disks
-            if owners.setdefault(path, target.name) != target.name:
-                message = f"generators '{owners[path]}' and '{target.name}' both write {file.path}"
+            owner, _ = owners.setdefault(path, (target, file))
+            if owner is not target:
+                message = f"generators '{owner.name}' and '{target.name}' both write {file.path}"
                 advice = "choose another `out` for one of them"
                 problems.append(failure(target.place("out"), message, advice))
             folder[file.path] = file.content
+    problems += _files_in_files(owners)
     if problems:
         raise InputError([*problems, *found])
     return TargetResult(tuple(TargetFolder(out, files) for out, files in made.items()), tuple(found))
+
+
+def _files_in_files(owners: Mapping[str, tuple[Target, File]]) -> Iterator[Diagnostic]:
+    for path, (target, file) in owners.items():
+        for parent in Path(path).parents:
+            if found := owners.get(str(parent)):
+                owner, other = found
+                message = f"generator '{target.name}' writes {file.path}, but {other.path} is a file"
+                message += f" of generator '{owner.name}'" if owner is not target else ", too"
+                yield failure(target.place("out"), message)
 
 
 class _Run:
@@ -167,6 +179,10 @@ class _Run:
 
     def _diagnostic(self, finding: Finding) -> Diagnostic:
         span = self._spans.get(finding.element) if finding.element else None
+        if finding.element and span is None and finding.element not in _ids(self._request.model):
+            name, element = self._generator.name, finding.element
+            message = f"generator '{name}' names an element that is not in the model: {element!r}"
+            return failure(self._place, message, f"it says: {finding.message}")
         place: Span | None = span or self._place
         about = "" if span is not None or finding.element is None else f" ({finding.element})"
         return Diagnostic(
@@ -190,6 +206,16 @@ class _Run:
                 problem = wrong_text(file.path, file.content, f"generator '{self._generator.name}'")
                 yield from [problem] if problem else []
             seen.add(file.path.casefold())
+
+
+def _ids(model: Model) -> Iterator[str]:
+    """The ids of all elements; those of derived messages have no place in a file."""
+    for package in model.packages:
+        yield from (interface.id for interface in package.interfaces)
+    for message in model.types:
+        yield message.id
+        yield from (field.id for field in message.fields)
+        yield from (constant.id for constant in message.constants)
 
 
 def _set_of(generator: Generator, target: Target, outputs: tuple[UsersOutput, ...]) -> Customization:
