@@ -20,7 +20,7 @@ from typing import Any, Final, cast
 
 from ifgen import generators as public
 from ifgen.config.customization import Customization, Output, Target
-from ifgen.diagnostics import Diagnostic, InputError, printable
+from ifgen.diagnostics import Diagnostic, InputError, printable, shorten
 from ifgen.generators import protocol
 from ifgen.pipeline.generators import find
 from ifgen.pipeline.generators.programs import failure
@@ -33,6 +33,10 @@ CORPUS: Final = Path(public.__file__).with_name("corpus.txt")
 _HEAD: Final = re.compile(r"^==> (\S+) <==\n", re.MULTILINE)
 _REPEATED: Final = re.compile(r"\* (\d+)\n(.*)", re.DOTALL)
 _MOST_LINES: Final = 30
+_MOST_FILES: Final = 3
+"""The files of one kind of difference that are shown; the others are counted."""
+
+_LONGEST_LINE: Final = 200
 _ELSEWHERE: Final = "another locale, PYTHONHASHSEED, time zone or working directory makes other files"
 _OTHER: Final = {
     **{"LC_ALL": "C", "LANG": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
@@ -200,16 +204,22 @@ def _plain_texts(files: Files) -> Iterator[str]:
 
 
 def _unequal(expected: Files, found: Files, why: str) -> Iterator[str]:
-    for name in sorted(expected.keys() | found.keys()):
+    different = [
+        name
+        for name in sorted(expected.keys() | found.keys())
+        if _shown(expected.get(name)) != _shown(found.get(name))
+    ]
+    for name in different[:_MOST_FILES]:
         before, after = _shown(expected.get(name)), _shown(found.get(name))
-        if before == after:
-            continue
         if before is None or after is None:
             yield f"{name} is {'new' if before is None else 'gone'}: {why}"
         else:
             lines = list(unified_diff(before.splitlines(), after.splitlines(), name, name, lineterm=""))
             more = [f"... {len(lines) - _MOST_LINES} more lines"] if len(lines) > _MOST_LINES else []
-            yield "\n".join([f"{name}: {why}", *lines[:_MOST_LINES], *more])
+            shown = (shorten(line, _LONGEST_LINE) for line in lines[:_MOST_LINES])
+            yield "\n".join([f"{name}: {why}", *shown, *more])
+    if len(different) > _MOST_FILES:
+        yield f"... and {len(different) - _MOST_FILES} more: {why}"
 
 
 def _shown(content: str | bytes | None) -> str | None:
