@@ -85,7 +85,7 @@ def copy_of(original: str, name: str, module: str) -> dict[str, bytes]:
             data = path.read_bytes()
             if path.suffix == ".py":
                 text = re.sub(rf"\b{re.escape(package)}\b", module, data.decode())
-                data = re.sub(rf"""\bname=(["']){original}\1""", f'name="{name}"', text).encode()
+                data = re.sub(rf"""\bname=(["']){re.escape(original)}\1""", f'name="{name}"', text).encode()
             found[inside] = data
     return found
 
