@@ -129,9 +129,10 @@ for line in sys.stdin:
 """
 
 
-def test_generators_outside_a_checkout(path: str, built: Path, tmp_path: Path) -> None:
+@pytest.mark.usefixtures("path")
+def test_generators_outside_a_checkout(programs: Path, built: Path, tmp_path: Path) -> None:
     """Each of ours, one of a package that pip installs, one that its author begins, a model, and the suite."""
-    ifgen, python = Path(path) / "ifgen", Path(path) / "python"
+    ifgen, python = programs / "ifgen", programs / "python"
     shutil.copytree(ROOT / "examples/generators/ros-csv", tmp_path / "ros-csv")
     assert "created acme-docs/pyproject.toml" in run(ifgen, "generators", "new", "acme-docs", cwd=tmp_path)
     pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--find-links", built)

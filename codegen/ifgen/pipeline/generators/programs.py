@@ -7,7 +7,6 @@ import os
 import signal
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
@@ -89,6 +88,8 @@ def formatted(target: Target, files: Iterable[File]) -> list[File]:
     given = list(files)
     if not target.format:
         return given
+    from concurrent.futures import ThreadPoolExecutor  # of use to few
+
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(partial(_formatted, target), given))
 
