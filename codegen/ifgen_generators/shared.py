@@ -37,25 +37,6 @@ def called_messages(types: Mapping[str, Message]) -> set[str]:
     return called
 
 
-def smallest_element(message: Message, types: Mapping[str, Message]) -> int:
-    """The least number of bytes of a message in a sequence: those of its values, without any padding.
-
-    It limits the counts that a payload can have. `Wire.min_size` does not: it has the padding of a message
-    that stands alone.
-    """
-    size = 0
-    for field in message.fields:
-        kind = field.type
-        if kind.array is not None and kind.array.kind != "fixed":
-            size += 4
-            continue
-        one = (
-            smallest_element(types[kind.message.type_name], types) if kind.message else (kind.bits or 32) // 8
-        )
-        size += one * (kind.size or 1)
-    return size or 1
-
-
 def name_clashes(model: Model, language: str, members: Container[str] = ()) -> Iterator[Finding]:
     """Errors at fields and constants that would have one name in a language, such as `class_` beside `class`.
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import ctypes
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
@@ -152,6 +153,78 @@ def test_a_type_stands_after_those_that_it_needs() -> None:
     for message in model().types:
         assert known.issuperset(message.dependencies)
         known.add(message.type_name)
+
+
+C_TYPES = {
+    **{"bool": ctypes.c_bool, "byte": ctypes.c_uint8, "char": ctypes.c_uint8, "int8": ctypes.c_int8},
+    **{"uint8": ctypes.c_uint8, "int16": ctypes.c_int16, "uint16": ctypes.c_uint16, "int32": ctypes.c_int32},
+    **{"uint32": ctypes.c_uint32, "int64": ctypes.c_int64, "uint64": ctypes.c_uint64},
+    **{"float32": ctypes.c_float, "float64": ctypes.c_double},
+}
+
+
+@cache
+def c_type(type_name: str) -> Any:
+    """The C structure of a message, None if it has fields that C has no values for."""
+    fields: list[tuple[str, Any]] = []
+    for field in types()[type_name].fields:
+        kind = field.type
+        one = c_type(kind.message.type_name) if kind.message else C_TYPES.get(kind.primitive)
+        if one is None or (kind.array is not None and kind.size is None):
+            return None
+        fields.append((field.name, one * kind.size if kind.size else one))
+    return type("Structure", (ctypes.Structure,), {"_fields_": fields or [("placeholder", ctypes.c_uint8)]})
+
+
+def leaves(structure: Any, at: int = 0) -> Iterator[tuple[int, int]]:
+    """The offsets and sizes of the values of a C type, in order."""
+    if hasattr(structure, "_fields_"):
+        for name, of in structure._fields_:
+            yield from leaves(of, at + getattr(structure, name).offset)
+    elif hasattr(structure, "_length_"):
+        for i in range(structure._length_):
+            yield from leaves(structure._type_, at + i * ctypes.sizeof(structure._type_))
+    else:
+        yield at, ctypes.sizeof(structure)
+
+
+class Layout(Writer):
+    """Notes where values stand, and in how many bytes."""
+
+    def __init__(self, types: Mapping[str, Message], start: int) -> None:
+        super().__init__(types)
+        self.data += bytes(start)
+        self.found: list[tuple[int, int]] = []
+
+    def items(self, step: Step, message: Any) -> None:
+        start = len(self.data)
+        super().items(step, message)
+        for item in step.items:
+            places = range(start + item.offset, len(self.data) + 1, item.size)
+            self.found += [(place, item.size) for place in places[: item.count or 1]]
+
+
+def test_plain_and_least_sizes_hold_wherever_a_message_starts(classes: Classes) -> None:
+    plain = 0
+    for type_name, cls in classes.items():
+        wire, structure = types()[type_name].wire, c_type(type_name)
+        for start in range(8):
+            layout = Layout(types(), start)
+            layout.run(wire.own, cls())
+            assert len(layout.data) - start >= wire.min_element_size
+            if structure is None:
+                assert not wire.plain
+                continue
+            begin = start + -start % wire.start_align
+            assert layout.found[0][0] == begin, "nothing but the first value decides where it starts"
+            same = [(place - begin, size) for place, size in layout.found] == list(leaves(structure))
+            same = same and len(layout.data) - begin == ctypes.sizeof(structure)
+            if begin % wire.align == 0:
+                assert wire.plain == same, (type_name, start)
+            if wire.plain and wire.start_align == wire.align:
+                assert same
+            plain += wire.plain
+    assert plain > 8 * 40
 
 
 def test_plain_messages_are_those_that_c_lays_out_alike() -> None:

@@ -7,14 +7,18 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import jsonschema
 import pytest
+from hypothesis import HealthCheck, given, settings
 from ifgen import model
 from ifgen.model import Model, document, read, schema, to_text
 from ifgen.pipeline.generators import kit
 from ifgen.pipeline.model import load_model
+
+from ..generated_tests.definitions import packages, write
 
 ROOT = Path(__file__).parents[2]
 
@@ -44,6 +48,54 @@ def test_a_document_is_read_back_as_it_was_whatever_else_is_in_it(loaded: Model)
     assert read(later).types == read(found).types
     with pytest.raises(ValueError, match=r"this is version 2\.0 of the model"):
         read({**found, "model": "2.0"})
+
+
+@pytest.mark.slow
+def test_the_documents_of_what_comes_with_ifgen_fit() -> None:
+    found = json.loads(to_text(load_model(ROOT / "interfaces", ROOT / "tests/conformance/interfaces")))
+    assert len(found["types"]) > 400
+    jsonschema.Draft202012Validator(schema()).validate(found)
+
+
+@pytest.mark.slow
+def test_the_documents_of_1000_drawn_interfaces_fit() -> None:
+    validator, count = jsonschema.Draft202012Validator(schema()), 0
+
+    @settings(max_examples=500, suppress_health_check=list(HealthCheck))
+    @given(packages())
+    def fits(files: dict[str, str]) -> None:
+        nonlocal count
+        with TemporaryDirectory() as folder:
+            write(files, Path(folder) / "any_msgs")
+            found = load_model(folder)
+        text = to_text(found)
+        validator.validate(json.loads(text))
+        assert to_text(read(json.loads(text))) == text
+        count += len(files)
+
+    fits()
+    assert count >= 1000
+
+
+def test_wide_strings_bytes_and_large_integers_as_values(tmp_path: Path) -> None:
+    write(
+        {
+            "msg/V.msg": 'wstring WIDE="𝄞 größe"\nbyte OCTET=200\nint64 EDGE=9007199254740991\n'
+            "uint64 BEYOND=9007199254740992\nint64 LEAST=-9223372036854775808\n"
+            'wstring wide "𝄞"\nbyte[2] octets [0, 255]\nchar letter 65\nuint64[] many [9007199254740993]\n'
+        },
+        tmp_path / "v_msgs",
+    )
+    [message] = document(load_model(tmp_path))["types"]
+    constants = {of["name"]: of["exact_value"] for of in message["constants"]}
+    assert constants["WIDE"] == {"value": "𝄞 größe", "exact": "𝄞 größe", "bits": None}
+    assert constants["OCTET"]["value"] == 200
+    assert constants["EDGE"]["value"] == 2**53 - 1 and constants["BEYOND"]["value"] == str(2**53)
+    assert constants["LEAST"]["value"] == constants["LEAST"]["exact"] == "-9223372036854775808"
+    wide, octets, letter, many = message["fields"]
+    assert wide["default_value"]["value"] == "𝄞" and letter["default_value"]["value"] == 65
+    assert [of["value"] for of in octets["default_elements"]] == [0, 255]
+    assert [of["value"] for of in many["default_elements"]] == ["9007199254740993"]
 
 
 def values(loaded: Model, name: str) -> dict[str, dict[str, Any]]:

@@ -112,3 +112,41 @@ def test_a_robot_needs_no_tools(built: Path, tmp_path: Path) -> None:
         "pyyaml",
         "xxhash",
     }
+
+
+TESTEE = """\
+import sys
+import ifgen
+
+for line in sys.stdin:
+    operation, name, type_name, *_ = line.split()
+    if operation == "hello":
+        print("ok", name, "protocol=1 language=python", flush=True)
+    elif operation == "hash":
+        print("ok", name, ifgen.type_hash(type_name), flush=True)
+    else:
+        print("skip", name, operation, flush=True)
+"""
+
+
+@pytest.mark.usefixtures("path")
+def test_generators_outside_a_checkout(programs: Path, built: Path, tmp_path: Path) -> None:
+    """Each of ours, one of a package that pip installs, one that its author begins, a model, and the suite."""
+    ifgen, python = programs / "ifgen", programs / "python"
+    shutil.copytree(ROOT / "examples/generators/ros-csv", tmp_path / "ros-csv")
+    assert "created acme-docs/pyproject.toml" in run(ifgen, "generators", "new", "acme-docs", cwd=tmp_path)
+    pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--find-links", built)
+    run(*pip, "./ros-csv", "./acme-docs", cwd=tmp_path, limit=300)
+    listed = [line.split()[0] for line in run(ifgen, "generators", "list", cwd=tmp_path).splitlines()]
+    assert len(listed) == 10 and {"acme-docs", "csv", "typescript"} <= set(listed)
+    for name in listed:
+        bounds = '{"bounds": {"*.string": 32, "*.wstring": 32, "*.sequence": 4}}' if name == "c" else "{}"
+        said = run(ifgen, "generators", "test", name, "--options", bounds, cwd=tmp_path)
+        assert said.endswith("no mistakes\n")
+        assert run(ifgen, "generators", "describe", name, cwd=tmp_path).startswith(f"{name} ")
+    (tmp_path / "a_msgs/msg").mkdir(parents=True)
+    (tmp_path / "a_msgs/msg/Dot.msg").write_text("geometry_msgs/Point at\n")
+    assert '"id": "geometry_msgs/msg/Point.x"' in run(ifgen, "model", "a_msgs", cwd=tmp_path)
+    (tmp_path / "testee.py").write_text(TESTEE)
+    suite = (ifgen, "conformance", "--only", "hash/geometry_msgs/*", "--", python, "testee.py")
+    assert re.search(r"^hash +32 +0 ", run(*suite, cwd=tmp_path), re.MULTILINE)

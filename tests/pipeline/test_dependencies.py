@@ -9,6 +9,7 @@ from pathlib import Path
 import ifgen.pipeline.stages
 import pytest
 from ifgen.diagnostics import UsageError
+from ifgen.pipeline.model import load_model
 from ifgen.reading.search_path import WithDeps
 
 FILES = {
@@ -113,3 +114,21 @@ def test_generating_again_with_the_output_among_the_paths(workspace: Path) -> No
     assert first.written
     again = ifgen.generate(".", output="generated")
     assert (again.written, again.removed) == ((), ())
+
+
+@pytest.mark.parametrize("file", ["msg/A.msg", "srv/A.srv", "action/A.action"])
+def test_what_a_single_file_needs_of_its_own_package(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, file: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (
+        "B b\n" if file.startswith("msg") else "B b\n---\n" if file.startswith("srv") else "B b\n---\n---\n"
+    )
+    for path, content in {file: text, "msg/B.msg": "C[2] c\n", "msg/C.msg": "int8 x\n"}.items():
+        place = tmp_path / "a_msgs" / path
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_text(content)
+    for with_deps in (False, True):
+        types = {of.type_name for of in load_model(f"a_msgs/{file}", with_deps=with_deps).types}
+        assert {"a_msgs/msg/B", "a_msgs/msg/C"} <= types
+    assert ifgen.pipeline.stages.generate(f"a_msgs/{file}", output="out", with_deps=True).written

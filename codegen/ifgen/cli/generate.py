@@ -188,6 +188,10 @@ def _report(done: Generated, settings: Settings) -> None:
         print(f"removed {shown_path(path)}")
     if more := removed[_MOST_REMOVED:]:
         print(f"removed {len(more)} more, the last of them {shown_path(more[-1])}")
+    if settings.custom.partial and targets:
+        listed = ", ".join(shown_path(folder) for folder in dict.fromkeys(targets))
+        print(f"{listed}: as before, because targets are about all paths: run `ifgen generate` without PATH")
+        targets = []
     for folder in dict.fromkeys((output, *targets)):
         _report_folder(done, folder, folders, always=folder == output and settings.custom.python)
 
@@ -252,7 +256,8 @@ def _check_freshness(
     if not drifts:
         if not quiet:
             custom = settings.custom
-            folders = ([settings.output] if custom.python else []) + [target.out for target in custom.targets]
+            folders = [settings.output] if custom.python else []
+            folders += [] if custom.partial else [target.out for target in custom.targets]
             print("\n".join(f"{shown_path(folder)}: up to date" for folder in dict.fromkeys(folders)))
         return int(any_errors(told))
     terminal.print_drift(drifts)

@@ -61,6 +61,12 @@ def describe(name: str, as_json: bool) -> int:
         print(f"  {option.name} = {json.dumps(option.default)}  ({kind})")
         if option.help:
             print(f"      {option.help}")
+    if found.templates is not None:
+        from ifgen.generator_py.templates.catalogue import blocks_of
+
+        print("\ntemplates, which `templates` of a target may replace:")
+        for template, blocks in blocks_of(found.templates).items():
+            print(f"  {template}" + (f"  (blocks: {', '.join(blocks)})" if blocks else ""))
     supported = FEATURES if found.features is None else found.features
     if missing := [words for feature, words in FEATURES.items() if feature not in supported]:
         print(f"\nnot supported: {', '.join(missing)}")
@@ -120,7 +126,8 @@ def test(
 @generators.command(epilog="Example: ifgen generators new acme-docs")
 @click.argument("name")
 @click.option("--in", "folder", metavar="DIR", type=OUTPUT_FOLDER, help="Make its folder here (default: .).")
-def new(name: str, folder: Path | None) -> int:
+@click.option("--from", "original", metavar="NAME", help="Begin with a copy of an installed generator.")
+def new(name: str, folder: Path | None, original: str | None) -> int:
     """Start a pip package with a generator, its test and CI."""
     if not re.fullmatch(r"[a-z][a-z0-9]*(-[a-z0-9]+)*", name):
         advice = "write small letters, digits and single hyphens, such as acme-docs"
@@ -136,16 +143,26 @@ def new(name: str, folder: Path | None) -> int:
     module = name.replace("-", "_")
     places = {
         "generator.toml": "pyproject.toml",
-        "generator.py.txt": f"{module}/__init__.py",
-        "generator_page.md.j2": f"{module}/templates/page.md.j2",
-        "generator_filters.py.txt": f"{module}/filters.py",
         "generator_test.py.txt": "tests/test_golden.py",
         "generator_workflow.yml": ".github/workflows/test.yml",
     }
+    if original is None:
+        places |= {
+            "generator.py.txt": f"{module}/__init__.py",
+            "generator_page.md.j2": f"{module}/templates/page.md.j2",
+            "generator_filters.py.txt": f"{module}/filters.py",
+        }
+    texts = {
+        root / path: resources.skeleton(file, name=name, module=module).encode()
+        for file, path in places.items()
+    }
+    if original is not None:
+        from ifgen.pipeline.generators.kit import copy_of
+
+        texts |= {root / module / path: data for path, data in copy_of(original, name, module).items()}
     root.mkdir(parents=True)
-    texts = {root / path: resources.skeleton(file, name=name, module=module) for file, path in places.items()}
     with sigterm_raises():
-        transaction.apply([(path, text.encode()) for path, text in texts.items()], root)
+        transaction.apply(list(texts.items()), root)
     for path in texts:
         print(f"created {shown_path(path)}")
     print(f"next: `pip install -e {shown_path(root)}`, then `ifgen generators test {name}`")

@@ -7,13 +7,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final, Literal, get_args
 
-from ifgen.config.keys import FLAG, PATH, Kind, key, list_of, one_of, required, text
+from ifgen.config.keys import CODE, FLAG, PATH, Kind, key, list_of, one_of, required, table_of, text
 from ifgen.diagnostics import Label, Span
 
 Per = Literal["package", "interface", "node", "run"]
 
 _ONLY: Final = list_of(text(""), 'a list of patterns, such as ["demo_msgs", "*/srv/*"]')
 _COMMAND: Final = list_of(text(""), 'a program and its arguments, such as ["node", "generate.mjs"]')
+_FORMATTERS: Final = table_of(
+    Kind(_COMMAND.expected, lambda value: _COMMAND.wrong(value) if value else [value], _COMMAND.read),
+    'a table of programs, such as {"*.ts" = ["prettier", "--stdin-filepath", "{path}"]}',
+)
 _OPTIONS: Final = Kind("a table", lambda value: () if isinstance(value, dict) else (value,))
 _SECONDS: Final = Kind(
     "a number of seconds above 0",
@@ -50,8 +54,9 @@ class Target:
 
     `use` is the name of an installed generator, `command` a program that is one; it has `time_limit` seconds.
     `only` has patterns as an `Output` has. With `with_deps` all that these interfaces need is generated too.
-    What the generator cannot express is refused, or left out if `unsupported` is "skip". `span` is the place
-    of the table.
+    What the generator cannot express is refused, or left out if `unsupported` is "skip". `templates` is a
+    folder whose templates win over those of the generator. `format` has a program for patterns of paths,
+    which reads a text and writes it as it should be. `span` is the place of the table.
     """
 
     name: str
@@ -62,10 +67,19 @@ class Target:
     only: tuple[str, ...] = key(_ONLY, [])
     with_deps: bool = key(FLAG, False)
     unsupported: Literal["error", "skip"] = key(one_of("error", "skip"), "error")
+    templates: Path | None = key(CODE)
+    format: Mapping[str, tuple[str, ...]] = key(_FORMATTERS, {})
     time_limit: float = key(_SECONDS, 60)
     base: Path = field(default=Path(), compare=False, repr=False)
     span: Span | None = field(default=None, compare=False, repr=False)
-    options_span: Span | None = field(default=None, compare=False, repr=False)
+
+    def place(self, *path: str) -> Span | None:
+        """The place of a key of the table in the configuration, or of the innermost table around it."""
+        if self.span is None:
+            return None
+        from ifgen.config.toml_text import find_key  # only errors need it
+
+        return find_key(self.span.source, ("generate", self.name, *path))
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +102,9 @@ class Customization:
     outputs per run stay as they are. Without `tests` no tests are generated. `behind` is a second folder of
     templates; those in `templates` win over it. With `distributions`, pip can install generated packages.
     `requirements` says what pip installs for other packages that these need; nothing, where it is empty.
-    `ros_distro` is the target ROS 2, if it is known. `targets` are the generators to run, beside the Python
-    packages or, if `python` is False, in place of them.
+    The original of a template in `behind` has its path after `behind_name`, as one of ifgen's has it after
+    `ifgen`. `ros_distro` is the target ROS 2, if it is known. `targets` are the generators to run, beside the
+    Python packages or, if `python` is False, in place of them.
     """
 
     templates: Path | None = None
@@ -98,6 +113,7 @@ class Customization:
     partial: bool = False
     tests: bool = True
     behind: Path | None = None
+    behind_name: str | None = None
     distributions: Distributions | None = None
     requirements: Mapping[str, str] = field(default_factory=dict[str, str])
     ros_distro: str | None = None

@@ -158,3 +158,22 @@ def _wrong(kind: Kind, values: Iterable[Any]) -> list[object]:
 FLAG: Final = Kind("true or false", _unless(lambda value: isinstance(value, bool)))
 PATH: Final = Kind("a path in quotes", _unless(_is_path), lambda value, base: base / value)
 PATHS: Final = list_of(PATH, 'a list of paths, such as ["interfaces"]')
+
+
+def _located(value: str, base: Path) -> Path:
+    """The path of a setting: below a folder, or `package:NAME/path` in a package that is installed."""
+    if not value.startswith("package:"):
+        return base / value
+    from importlib.util import find_spec  # of use to few
+
+    name, _, rest = value.removeprefix("package:").partition("/")
+    try:
+        spec = find_spec(name)
+    except (ImportError, ValueError):
+        spec = None
+    if spec is None or not spec.submodule_search_locations:
+        return Path(value)  # which does not exist
+    return Path(spec.submodule_search_locations[0]) / rest
+
+
+CODE: Final = Kind('a path in quotes, or "package:NAME/folder"', PATH.wrong, _located)

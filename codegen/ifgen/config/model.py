@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, cast, get_args
 from ifgen import resources
 from ifgen.config.customization import Output, Target
 from ifgen.config.keys import (
+    CODE,
     FLAG,
     PATH,
     PATHS,
@@ -35,23 +36,6 @@ if TYPE_CHECKING:
 
 # Late imports: what a command without a configuration does without, or with one that is cached.
 
-
-def _located(value: str, base: Path) -> Path:
-    """The path of a setting: below a folder, or `package:NAME/path` in a package that is installed."""
-    if not value.startswith("package:"):
-        return base / value
-    from importlib.util import find_spec  # of use to few
-
-    name, _, rest = value.removeprefix("package:").partition("/")
-    try:
-        spec = find_spec(name)
-    except (ImportError, ValueError):
-        spec = None
-    if spec is None or not spec.submodule_search_locations:
-        return Path(value)  # which does not exist
-    return Path(spec.submodule_search_locations[0]) / rest
-
-
 _WITH_DEPS: Final = Kind(
     'true, false or "own"', lambda value: () if isinstance(value, bool) or value == "own" else (value,)
 )
@@ -61,7 +45,6 @@ _OUTPUTS: Final = Kind(
     lambda tables, base: {name: Output(name, **read(Output, table, base)) for name, table in tables.items()},
     Output,
 )
-_CODE: Final = Kind('a path in quotes, or "package:NAME/folder"', PATH.wrong, _located)
 _TARGETS: Final = Kind(
     "a table, whose keys are names for targets",
     lambda value: () if isinstance(value, dict) else (value,),
@@ -100,8 +83,8 @@ class Config:
     exclude: tuple[str, ...] = key(_PATTERNS, [])
     with_deps: WithDeps = key(_WITH_DEPS, False)
     tests: bool = key(FLAG, True)
-    templates: Path | None = key(_CODE)
-    filters: Path | None = key(_CODE)
+    templates: Path | None = key(CODE)
+    filters: Path | None = key(CODE)
     outputs: Mapping[str, Output] = key(_OUTPUTS, {})
     generate: Mapping[str, Target] = key(_TARGETS, {})
     python: bool = key(FLAG, True)

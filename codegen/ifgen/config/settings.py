@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ifgen.config.customization import Customization, Distributions, Target
+from ifgen.config.customization import Customization, Distributions
 from ifgen.config.suppressions import Policy
-from ifgen.diagnostics import Diagnostic, Label, Span, UsageError
+from ifgen.diagnostics import Diagnostic, Label, UsageError
 from ifgen.reading.storage import read_limited
 
 # Late imports: the keys of [tool.ifgen], which many commands do without.
@@ -95,6 +95,8 @@ def settle(  # noqa: PLR0913 - one for each option
     _check_existence(config, "include", config.include)
     _check_existence(config, "templates", (config.templates,))
     _check_existence(config, "filters", (config.filters,))
+    for name, target in config.generate.items():
+        _check_existence(config, "templates", (target.templates,), "generate", name)
     policy = Policy(
         rules=config.ignore,
         per_file=config.per_file_ignores,
@@ -138,15 +140,10 @@ def _customization(
         requirements=config.requirements,
         ros_distro=config.ros_distro or os.environ.get("ROS_DISTRO"),
         targets=tuple(
-            replace(target, span=config.place("generate", name), options_span=_options_place(config, target))
-            for name, target in config.generate.items()
+            replace(target, span=config.place("generate", name)) for name, target in config.generate.items()
         ),
         python=config.python,
     )
-
-
-def _options_place(config: Config, target: Target) -> Span | None:
-    return config.place("generate", target.name, "options") if target.options else None
 
 
 def configured_paths() -> tuple[Path, ...]:
@@ -166,12 +163,12 @@ def _config(isolated: bool) -> Config:
     return Config()
 
 
-def _check_existence(config: Config, key: str, paths: Iterable[Path | None]) -> None:
-    """Raise UsageError for the paths of a key that do not exist."""
+def _check_existence(config: Config, key: str, paths: Iterable[Path | None], *table: str) -> None:
+    """Raise UsageError for the paths of a key that do not exist; it may be in a table of [tool.ifgen]."""
     if missing := [path for path in paths if path is not None and not path.exists()]:
-        label = Label(config.place(key))
+        label = Label(config.place(*table, key))
         advice = "`ifgen new interface demo_msgs/msg/Name` makes it" if key == "paths" else None
-        message = f"'{key}' in [tool.ifgen] names {{}}, which does not exist"
+        message = f"'{key}' in [{'.'.join(('tool', 'ifgen', *table))}] names {{}}, which does not exist"
         raise UsageError(
             Diagnostic("configuration", message.format(path), label, help=advice) for path in missing
         )

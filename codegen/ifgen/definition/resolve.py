@@ -259,10 +259,12 @@ class _Resolver:
         elif file is None:
             if problems is not None:
                 problems.error(references.unknown_type, type_, field, package, self._search)
-        elif self._search.comes_along(type_.package, self._with_deps):
-            self.add_package(package, requested=False)
         else:
-            self._adopt(package, requested=False)
+            if self._search.comes_along(type_.package, self._with_deps):
+                self.add_package(package, requested=False)
+            else:
+                self._adopt(package, requested=False)
+            # Also where all of the package comes along: its files may be a single one, which was asked for.
             self._add(package, file, requested=False)
         # A file that was found by the name of the whole may have no such part, and a service is no message.
         is_unknown = type_.folder != "msg" and type_.type_name not in self._messages

@@ -21,20 +21,15 @@ def describe_request() -> str:
 
 
 def generate_request(request: Request) -> str:
-    """The request that a program answers with files."""
-    return (
-        json.dumps(
-            {
-                "ifgen": PROTOCOL,
-                "request": "generate",
-                "model": document(request.model),
-                "options": dict(request.options),
-                "target": {"name": request.name},
-            },
-            ensure_ascii=False,
-        )
-        + "\n"
-    )
+    """The request that a program answers with files. It is ASCII, which a program reads in any locale."""
+    asked = {
+        "ifgen": PROTOCOL,
+        "request": "generate",
+        "model": document(request.model),
+        "options": dict(request.options),
+        "target": {"name": request.name},
+    }
+    return json.dumps(asked) + "\n"
 
 
 def described(answer: object, name: str) -> Generator:

@@ -90,8 +90,14 @@ class Wire:
     `steps` are for a message that stands alone; nested messages are part of them, except large ones, which
     are calls. `own` are for its fields alone, wherever it starts: every nested message is a call. No payload
     is shorter than `min_size`; none is longer than `max_size`, which is None if nothing bounds it. Both are
-    exact for a `fixed` size. `align` is the largest alignment in it. A `plain` message has the same bytes in
-    memory as a C structure of its fields has on a little-endian machine, so that one copy is enough.
+    exact for a `fixed` size, and count the padding of a message that stands alone. `min_element_size` is the
+    least that it takes in another message, without any padding: a count of more than the bytes that are left
+    divided by it cannot be true. `align` is the largest alignment in it, `start_align` that of its first
+    value, which is all that its start in another message is sure to have.
+
+    A `plain` message has the same bytes in memory as a C structure of its fields has on a little-endian
+    machine, so that one copy is enough, where it starts at a multiple of `align`: alone it does; in another
+    message only if `start_align` is the same.
     """
 
     fixed: bool
@@ -99,5 +105,7 @@ class Wire:
     align: int
     min_size: int
     max_size: int | None
+    min_element_size: int
+    start_align: int
     steps: tuple[Step, ...]
     own: tuple[Step, ...]

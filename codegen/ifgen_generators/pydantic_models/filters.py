@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ifgen.model import Field, FieldType, Interface, TypeReference
+
+_ATTRIBUTES = """
+construct copy dict from_orm json parse_file parse_obj parse_raw schema schema_json update_forward_refs
+validate model_computed_fields model_config model_construct model_copy model_dump model_dump_json
+model_extra model_fields model_fields_set model_json_schema model_parametrized_name model_post_init
+model_rebuild model_validate model_validate_json model_validate_strings to_message from_message
+"""
+_RESERVED = frozenset(_ATTRIBUTES.split())
+"""The attributes that every model has."""
 
 _PYTHON = {"bool": "bool", "int": "int", "float": "float", "byte": "int", "char": "str", "string": "str"}
 
@@ -15,19 +25,47 @@ def model(message: TypeReference) -> str:
     return f"{message.package}_{message.folder}_{message.name}"
 
 
+def attribute(field: Field) -> str:
+    """The name of a field in its model, with `_` where every model has such an attribute."""
+    return f"{field.attribute}_" if field.attribute in _RESERVED else field.attribute
+
+
+def taken(interface: Interface) -> frozenset[str]:
+    """The names of classes and fields in a module, in which they do not stand for what it imports."""
+    fields = (attribute(field) for message in interface.messages for field in message.fields)
+    return frozenset(fields) | {message.name for message in interface.messages}
+
+
+def free(text: str, interface: Interface) -> str:
+    """Names of Python, each with `_` where something in the module has the same one."""
+    names = taken(interface)
+    return re.sub(r"\w+", lambda match: f"{match[0]}_" if match[0] in names else match[0], text)
+
+
 def imports(interface: Interface, package: str, converts: bool) -> list[str]:
     """The import statements of a module of `package`, in the order that isort wants."""
     types = [field.type for message in interface.messages for field in message.fields]
-    names = ["Annotated"] if any("Annotated" in annotation(type_) for type_ in types) else []
-    if any(message.constants for message in interface.messages):
-        names.append("ClassVar")
-    others = [f"from pydantic import BaseModel, ConfigDict{', Field' if types else ''}"]
+    constants = [of.type for message in interface.messages for of in message.constants]
+    texts = [*map(annotation, types), *map(annotation_of_constant, constants)]
+    words = {str(word) for text in texts for word in re.findall(r"\w+", text)}
+    if converts:
+        words.add("classmethod")
+    names = [*(["Annotated"] if "Annotated" in words else []), *(["ClassVar"] if constants else [])]
+    hidden = taken(interface)
+
+    def named(*words: str) -> str:
+        return ", ".join(f"{word} as {word}_" if word in hidden else word for word in words)
+
+    builtin = sorted(hidden & words & {"bool", "bytes", "classmethod", "float", "int", "list", "str"})
+    first = [f"from builtins import {named(*builtin)}"] if builtin else []
+    first += [f"from typing import {named(*names)}"] if names else []
+    others = [f"from pydantic import {named('BaseModel', 'ConfigDict', *(['Field'] if types else []))}"]
     if converts:
         others.append(f"from {interface.module} import {interface.name} as _{interface.name}")
     for used in interface.uses:
         module = f"{package}.{used.package}.{used.folder}.{used.snake_interface}"
         others.append(f"from {module} import {used.name} as {model(used)}")
-    return [*([f"from typing import {', '.join(names)}", ""] if names else []), *sorted(others)]
+    return [*first, *([""] if first else []), *sorted(others)]
 
 
 def annotation(type_: FieldType) -> str:

@@ -7,8 +7,6 @@ from typing import Final
 
 from ifgen.model import Field, Item, Message, Step, safe_name
 
-from ifgen_generators.shared import smallest_element
-
 TYPES: Final[Mapping[str, str]] = {
     **{"bool": "bool", "byte": "u8", "char": "u8", "float32": "f32", "float64": "f64"},
     **{f"{sign}int{bits}": f"{'u' if sign else 'i'}{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)},
@@ -247,7 +245,7 @@ class Codec:
 
     def _read_many(self, step: Step, name: str) -> None:
         element_type = self._types.get(step.type_name or "")  # None for strings, which have a length at least
-        size = smallest_element(element_type, self._types) if element_type else 4
+        size = element_type.wire.min_element_size if element_type else 4
         align = f"r.take({step.element_align}, 0)?;"
         if step.count is not None:
             if step.kind == "repeat" and step.element_align > 1:

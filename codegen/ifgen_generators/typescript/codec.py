@@ -8,8 +8,6 @@ from typing import Final
 
 from ifgen.model import Field, Item, Message, Primitive, Step, safe_name
 
-from ifgen_generators.shared import smallest_element
-
 ARRAYS: Final[Mapping[str, tuple[str, str]]] = {
     "byte": ("u8", "Uint8"),
     "char": ("u8", "Uint8"),
@@ -283,7 +281,7 @@ class ReadFunction:
             assert step.type_name is not None
             kind, size = (
                 self._functions[f"type {step.type_name}"],
-                smallest_element(self._types[step.type_name], self._types),
+                self._types[step.type_name].wire.min_element_size,
             )
         count = str(step.count) if step.count is not None else self._count(step, size)
         array, index = self._named("a", f"[] as {kind}[]"), self._out.name("i")

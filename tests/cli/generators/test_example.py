@@ -1,8 +1,10 @@
-"""examples/generators/ros-csv: installed by pip, found by its entry point, and used."""
+"""examples/generators: a package that pip installs, and a program in another language."""
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -52,6 +54,30 @@ def test_pip_installs_it_and_ifgen_finds_it(tmp_path: Path) -> None:
         [*run, "generators", "list"], env=environment, capture_output=True, text=True, timeout=60, check=True
     )
     assert "csv            one table of all fields, for spreadsheets (ros-csv 1.0)\n" in listed.stdout
+
+
+PERL = SOURCE.with_name("perl")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(shutil.which("perl") is None, reason="perl is not installed")
+def test_the_program_passes_the_kit_and_the_suite(ifgen: Run, tmp_path: Path) -> None:
+    shutil.copy(PERL / "generate.pl", tmp_path)
+    done = ifgen("generators", "test", "--command", "perl generate.pl")
+    assert (done.code, done.err) == (0, "")
+    assert done.out in (PERL / "README.md").read_text()
+    root = SOURCE.parents[2]
+    text = (PERL / "pyproject.toml").read_text()
+    ours = '"../../../interfaces/sensor_msgs"'
+    assert ours in text
+    suite = [str(root / "interfaces"), str(root / "tests/conformance/interfaces")]
+    write(tmp_path / "pyproject.toml", text.replace(f"[{ours}]", json.dumps(suite)))
+    assert ifgen("generate").code == 0
+    testee = [sys.executable, "-m", "ifgen", "conformance", "--", "perl", "-Ilib", str(PERL / "testee.pl")]
+    judged = subprocess.run(testee, capture_output=True, text=True, timeout=280, check=False)
+    assert judged.returncode == 0, judged.stdout
+    [passed] = re.findall(r"^all +(\S+) ", judged.stdout, re.MULTILINE)
+    assert f"all {passed} cases" in (PERL / "README.md").read_text()
 
 
 def test_it_passes_the_kit(ifgen: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,9 +11,10 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
-from ifgen.pipeline.generators import kit
+from ifgen.pipeline.generators import find, kit
 
 from ..conftest import Run, write
+from .conftest import Package
 
 SHIPPED = sorted(
     found.name for found in entry_points(group="ifgen.generators") if found.value.startswith("ifgen_")
@@ -23,7 +24,9 @@ BOUNDS = json.dumps({"bounds": {"*.string": 32, "*.wstring": 32, "*.sequence": 4
 """What C needs for fields without a bound."""
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name == "mermaid" else pytest.mark.slow) for name in SHIPPED]
+)
 def test_what_we_ship_passes_our_own_kit(ifgen: Run, name: str) -> None:
     done = ifgen("generators", "test", name, *(["--options", BOUNDS] if name == "c" else []))
     assert (done.code, done.err) == (0, "")
@@ -39,6 +42,7 @@ def test_the_corpus_has_every_kind_of_trap(ifgen: Run, tmp_path: Path) -> None:
     assert len(files["trap_msgs/msg/Large.msg"].splitlines()) == 140
 
 
+@pytest.mark.slow
 def test_golden_files(ifgen: Run, tmp_path: Path) -> None:
     golden = ("generators", "test", "json-schema", "--golden", tmp_path / "golden")
     assert ifgen(*golden, "--update").code == 0
@@ -55,10 +59,14 @@ def test_golden_files(ifgen: Run, tmp_path: Path) -> None:
 TRAPS = {
     "a second run makes other files": "import os; answer['files'][0]['text'] = str(os.getpid())",
     "unknown members of the model change its files": "answer['files'][0]['text'] = str(len(request['model']))",
+    "another locale, PYTHONHASHSEED, time zone or working directory makes other files": (
+        "import os; answer['files'][0]['text'] = os.environ.get('TZ', '')"
+    ),
     "it makes no files": "answer['files'] = []",
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("problem", TRAPS)
 def test_what_the_kit_finds(ifgen: Run, tmp_path: Path, problem: str) -> None:
     write(
@@ -70,9 +78,41 @@ def test_what_the_kit_finds(ifgen: Run, tmp_path: Path, problem: str) -> None:
     assert done.code == 1 and f"error: {problem}" in done.err.replace("a: ", "")
 
 
+ELSEWHERE = """
+    from pathlib import Path
+    from ifgen.generators import File, Generator, Response
+
+    def generate(request):
+        return Response((File("a", EXPRESSION),))
+
+    GENERATOR = Generator(name="theirs", version="1.0", generate=generate)
+    """
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "str(Path.cwd())",
+        "str({*'abcdefgh'})",
+        "Path(__file__).with_name('a.txt').read_text()",
+        "__import__('locale').getencoding()",
+    ],
+)
+def test_the_kit_finds_what_depends_on_the_machine(ifgen: Run, package: Package, expression: str) -> None:
+    package(ELSEWHERE.replace("EXPRESSION", expression), **{"a.txt": "\N{BULLET}"})
+    done = ifgen("generators", "test", "theirs")
+    assert done.code == 1 and "another locale, PYTHONHASHSEED, time zone or working directory" in done.err
+    assert "Traceback" not in done.err
+
+
 def test_list_and_describe(ifgen: Run) -> None:
     assert re.search(r"^json-schema +JSON Schema", ifgen("generators", "list").out, re.MULTILINE)
     assert 'int64 = "number"  ("number" | "string")' in ifgen("generators", "describe", "json-schema").out
+    assert (
+        "  model.py.j2  (blocks: imports, bases, additions)\n"
+        in ifgen("generators", "describe", "pydantic").out
+    )
     assert json.loads(ifgen("generators", "describe", "json-schema", "--json").out)["model"] == "1.0"
     assert "did you mean 'json-schema'?" in ifgen("generators", "describe", "json-shema").err
 
@@ -100,6 +140,29 @@ def test_a_new_generator_passes_its_own_tests(ifgen: Run, tmp_path: Path) -> Non
         assert done.returncode == code, done.stdout + done.stderr
     golden = tmp_path / "acme-docs/tests/golden/trap_msgs/msg/units.md"
     assert "| `speed` | `float64` |" in golden.read_text()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("original", SHIPPED)
+def test_a_copy_of_ours_makes_the_same_files(
+    ifgen: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, original: str
+) -> None:
+    name = f"copy-of-{original}"
+    assert ifgen("generators", "new", name, "--from", original).code == 0
+    info = tmp_path / f"{name}/copy-0.1.0.dist-info"
+    write(info / "METADATA", "Metadata-Version: 2.1\nName: copy\nVersion: 0.1.0\n")
+    module = name.replace("-", "_")
+    write(info / "entry_points.txt", f"[ifgen.generators]\n{name} = {module}:GENERATOR\n")
+    monkeypatch.syspath_prepend(tmp_path / name)
+    find.installed.cache_clear()
+    options = ["--options", BOUNDS] if original == "c" else []
+    try:
+        golden = ["--golden", tmp_path / "golden", *options]
+        assert ifgen("generators", "test", original, *golden, "--update").code == 0
+        done = ifgen("generators", "test", name, *golden)
+        assert (done.code, done.err) == (0, "")
+    finally:
+        find.installed.cache_clear()
 
 
 def test_the_five_minutes_of_the_page(ifgen: Run) -> None:

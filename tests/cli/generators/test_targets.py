@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 import pytest
+from ifgen.pipeline.generators import programs
 
 from ..conftest import Run, write
 from .conftest import Package, Program
@@ -83,7 +84,7 @@ def test_a_wrong_option(ifgen: Run, package: Package, options: str, message: str
     with Path("pyproject.toml").open("a") as file:
         file.write(f"options = {{ {options} }}\n")
     done = ifgen("generate")
-    assert done.code == 1 and message in done.err and "pyproject.toml:6:1" in done.err
+    assert done.code == 1 and message in done.err and "pyproject.toml:6:13" in done.err
     assert not Path("generated").exists()
 
 
@@ -171,24 +172,54 @@ BAD = {
         "'severity' of a diagnostic",
     ),
     "python": ("answer['files'][0] = {'path': 'x.py', 'text': '\\ndef x('}", "makes a broken file: x.py:2: "),
+    "half": ("print(json.dumps(answer)[:-9]); sys.exit()", "answered 'generate' with what is no JSON: '{"),
+    "nothing": ("sys.exit()", "answered 'generate' with what is no JSON: ''"),
+    "bytes": ("sys.stdout.buffer.write(bytes([255, 254])); sys.exit()", "with what is no JSON"),
+    "megabytes": ("print('x' * 5_000_000); sys.exit()", "with what is no JSON: 'xxxxxxxx"),
+    "endless": ("while True: print('x' * 100_000)", "answered 'generate' with more than "),
+    "deep": ("print('[' * 100_000); sys.exit()", "with what is no JSON: '[[[[[["),
+    "hang": ("import time; time.sleep(60)", "did not answer '"),
+    # What it starts has its pipes, and ends with it.
+    "child": (
+        "import subprocess; subprocess.Popen(['sleep', '60']); sys.exit()",
+        "did not answer '",
+    ),
+    "killed": ("import os; os.kill(os.getpid(), 9)", "ended with exit code -9 when asked to generate"),
+    "inside": ("answer['files'][0]['path'] = 'a/../../x'", "wants to write 'a/../../x': that is outside"),
+    "network": ("answer['files'][0]['path'] = '//host/x'", "wants to write '//host/x': that is"),
+    "folder": ("answer['files'][0]['path'] = 'a/'", "that is not the plain path of a file"),
+    "none": ("answer['files'][0]['path'] = ''", "that is not the plain path of a file"),
+    "nul": ("answer['files'][0]['path'] = 'a\\0b'", "that is not the plain path of a file"),
+    "surrogate": ("answer['files'][0]['text'] = '\\ud800'", "makes a broken file: a_msgs/msg/Dot.txt"),
+    "both kinds": (
+        "answer['files'] += [{'path': 'a_msgs/msg/Dot.txt/x', 'text': ''}]",
+        "writes a_msgs/msg/Dot.txt/x, but a_msgs/msg/Dot.txt is a file, too",
+    ),
+    "symlink": ("answer['files'][0]['path'] = 'link/x.txt'", "out/link is "),
+    "element": (
+        "answer['diagnostics'] = [{'severity': 'warning', 'message': 'hm', 'element': 'no/msg/Such'}]",
+        "names an element that is not in the model: 'no/msg/Such'",
+    ),
 }
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_a_bad_answer_is_one_error_and_nothing_is_written(ifgen: Run, program: Program, name: str) -> None:
+def test_a_bad_answer_is_one_error_and_old_files_stay(
+    ifgen: Run, program: Program, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
     body, message = BAD[name]
-    program(body)
+    program("answer['files'] += [{'path': 'old.txt', 'text': 'old'}]")
+    assert ifgen("generate").code == 0
+    Path("elsewhere").mkdir()
+    Path("out/link").symlink_to(Path("elsewhere").absolute())
+    before = {path: path.read_bytes() for path in sorted(Path("out").rglob("*")) if path.is_file()}
+    monkeypatch.setattr(programs, "MAX_GENERATED", 10_000_000)
+    program(body, time_limit=1 if name in {"hang", "child"} else 60)
     done = ifgen("generate")
     assert done.code == 1 and done.err.count("error[") == 1
-    assert message in done.err and "'mine'" in done.err
-    assert not Path("out").exists()
-
-
-def test_a_program_that_hangs(ifgen: Run, program: Program) -> None:
-    # What it starts has its pipes, and ends with it.
-    program("import subprocess, time; subprocess.Popen(['sleep', '60']); time.sleep(60)", time_limit=0.5)
-    done = ifgen("generate")
-    assert done.code == 1 and "did not answer 'generate' within 0.5 s" in done.err
+    assert message in done.err and ("'mine'" in done.err or name == "symlink") and len(done.err) < 3000
+    assert {path: path.read_bytes() for path in sorted(Path("out").rglob("*")) if path.is_file()} == before
+    assert not list(Path("elsewhere").iterdir()) and not Path("x").exists()
 
 
 def test_a_program_that_is_not_there(ifgen: Run, program: Program) -> None:
@@ -247,7 +278,7 @@ def test_a_broken_target_keeps_all_others_from_writing(ifgen: Run, program: Prog
 def test_a_broken_package(ifgen: Run, package: Package, module: str, message: str) -> None:
     package(module)
     done = ifgen("generate")
-    assert done.code == 1 and message in done.err and "pyproject.toml:3:22" in done.err
+    assert done.code == 1 and message in done.err and "pyproject.toml:4:1" in done.err
     assert not Path("generated").exists()
 
 
@@ -268,3 +299,114 @@ def test_a_template_that_makes_a_broken_file(ifgen: Run, package: Package) -> No
     done = ifgen("generate")
     assert "template one.md.j2 makes a broken file: a_msgs/dot.toml:2: " in done.err
     assert "templates/one.md.j2:3:1" in done.err
+
+
+OURS = """\
+[tool.ifgen]
+paths = ["interfaces"]
+python = false
+[tool.ifgen.generate.docs]
+use = "markdown"
+out = "docs"
+"""
+
+
+def _project(*lines: str) -> None:
+    write(Path("interfaces/a_msgs/msg/Dot.msg"), "float64 x\n")
+    write(Path("pyproject.toml"), OURS + "".join(f"{line}\n" for line in lines))
+
+
+@pytest.mark.parametrize("name", ["pages", "package:acme_pages/docs"])
+def test_templates_of_a_set_are_replaced(ifgen: Run, monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    folder = Path("pages")
+    if name != "pages":
+        write(Path("site/acme_pages/__init__.py"), "")
+        monkeypatch.syspath_prepend(Path("site").absolute())
+        folder = Path("site/acme_pages/docs")
+    write(
+        folder / "package.md.j2",
+        '{% extends "markdown/package.md.j2" %}\n{% block title %}\n{{ super() }}\nOf Acme.\n{% endblock %}\n',
+    )
+    _project(f'templates = "{name}"')
+    done = ifgen("generate")
+    assert (done.code, done.err) == (0, "")
+    assert Path("docs/a_msgs.md").read_text().startswith("# a\\_msgs\n\nOf Acme.\n")
+    write(folder / "package.md.j2", "{{ package.name }}\n")
+    assert ifgen("generate").out == "docs: 1 file written, 1 file unchanged\n"
+    assert Path("docs/a_msgs.md").read_text() == "a_msgs\n"
+
+
+@pytest.mark.parametrize(
+    ("line", "file", "message"),
+    [
+        ('templates = "pages"', "pages/pakage.md.j2", "markdown has no template pakage.md.j2"),
+        ('templates = "elsewhere"', "pages/x", "pyproject.toml:7:1"),
+        ('templates = "package:no_such/pages"', "pages/x", "pyproject.toml:7:1"),
+    ],
+)
+def test_templates_that_replace_nothing(ifgen: Run, line: str, file: str, message: str) -> None:
+    write(Path(file), "")
+    _project(line)
+    done = ifgen("generate")
+    assert done.code != 0 and message in done.err and done.err.count("error[") == 1
+    assert not Path("docs").exists()
+
+
+def test_a_generator_without_templates_can_be_copied(ifgen: Run) -> None:
+    write(Path("pages/x.j2"), "")
+    _project('templates = "pages"')
+    Path("pyproject.toml").write_text(OURS.replace("markdown", "mermaid") + 'templates = "pages"\n')
+    done = ifgen("generate")
+    assert "pyproject.toml:7:1" in done.err and "generators new NAME --from mermaid" in done.err
+
+
+def test_a_formatter_reads_and_writes_texts(ifgen: Run) -> None:
+    _project('format = { "*.md" = ["sed", "s,^# ,# {path} ,"] }')
+    assert ifgen("generate").out == "docs: 2 files written\n"
+    assert Path("docs/a_msgs.md").read_text().startswith(f"# {Path('docs/a_msgs.md').absolute()} a")
+    assert ifgen("generate").out == "docs: up to date (2 files)\n"
+    assert ifgen("generate", "--check").code == 0
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        ('["sh", "-c", "echo no >&2; exit 3"]', "ended with exit code 3 for "),
+        ('["no-such-program"]', "cannot be started: no-such-program: No such file or directory"),
+        ('["printf", "\\\\377"]', "wrote no UTF-8 for "),
+        ('["sleep", "9"]', "took too long for "),
+        ("[]", "must be a table of programs"),
+        ('"prettier"', "must be a table of programs"),
+    ],
+)
+def test_a_formatter_that_fails(ifgen: Run, command: str, message: str) -> None:
+    _project(f'format = {{ "*.md" = {command} }}', "time_limit = 0.3")
+    done = ifgen("generate")
+    assert done.code != 0 and message in done.err and "pyproject.toml:7:" in done.err
+    assert done.err.count("error[") == 1 and not Path("docs").exists()
+
+
+def test_the_kit_warns_of_lines_that_run_together(ifgen: Run, package: Package) -> None:
+    files = SET.replace("{package}/{interface", "{package}/{folder}/{interface")
+    package(files, **FILES | {"templates__one.md.j2": "a\n{%- if true %}\nb\n{%- endif %}\n"})
+    done = ifgen("generators", "test", "theirs")
+    assert done.code == 0 and "warning[trimmed-line]" in done.err and "one.md.j2:2:1" in done.err
+
+
+def test_a_run_on_a_part_leaves_targets_alone_and_says_so(ifgen: Run) -> None:
+    _project()
+    write(Path("interfaces/b_msgs/msg/Dot.msg"), "float64 y\n")
+    assert ifgen("generate").out == "docs: 3 files written\n"
+    write(Path("interfaces/b_msgs/msg/Dot.msg"), "float64 z\n")
+    said = ifgen("generate", "interfaces/b_msgs").out
+    assert said == "docs: as before, because targets are about all paths: run `ifgen generate` without PATH\n"
+    assert "`y`" in Path("docs/b_msgs.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("line", "place"),
+    [('only = ["b_msgs"]', "7:1"), ('options = { titel = "x" }', "7:13"), ("options.source = 1", "7:9")],
+)
+def test_an_error_is_at_the_key(ifgen: Run, line: str, place: str) -> None:
+    _project(line)
+    assert f"pyproject.toml:{place}" in ifgen("generate").err

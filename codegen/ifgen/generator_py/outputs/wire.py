@@ -61,6 +61,7 @@ class Wires:
     def __init__(self) -> None:
         self._sizes: dict[str, _Size] = {}
         self._layouts: dict[str, _Layout | None] = {}
+        self._elements: dict[str, tuple[int, int]] = {}
 
     def of(self, message: Message, extents: Extents) -> Wire:
         """The wire of a message; `extents` are those of its registry."""
@@ -71,12 +72,15 @@ class Wires:
         self._sizes[message.type_name] = self._sum(own_steps)
         self._layouts[message.type_name] = self._layout(message)
         size = self._sum(steps)
+        least, start_align = self._elements[message.type_name] = self._element(message)
         return Wire(
             fixed=size.fixed,
             plain=self._layouts[message.type_name] is not None,
             align=max(1, *map(self._align, steps)),
             min_size=size.least,
             max_size=size.most,
+            min_element_size=least,
+            start_align=start_align,
             steps=steps,
             own=own_steps,
         )
@@ -135,6 +139,24 @@ class Wires:
             least=prefix + (before + least * step.count if step.count is not None else 0),
             most=None if count is None or most is None else prefix + before_most + most * count,
         )
+
+    def _element(self, message: Message) -> tuple[int, int]:
+        """The least size of the values of a message, and the alignment of the first of them."""
+        fields = [self._element_of(field.type) for field in message.fields] or [(1, 1)]
+        return sum(size for size, _ in fields), fields[0][1]
+
+    def _element_of(self, type_: FieldType) -> tuple[int, int]:
+        element = element_of(type_)
+        if element is not type_ and not isinstance(type_, Array):
+            return COUNT_SIZE, COUNT_SIZE
+        match element:
+            case BasicType(name):
+                size = align = NUMBERS[name].size
+            case NamespacedType():
+                size, align = self._elements[element.type_name]
+            case _:
+                size = align = COUNT_SIZE
+        return size * (type_.size if isinstance(type_, Array) else 1), align
 
     def _layout(self, message: Message) -> _Layout | None:
         """The layout of a C structure with these fields, if the bytes on the wire are the same."""

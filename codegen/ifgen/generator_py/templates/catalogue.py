@@ -180,6 +180,12 @@ def listed(custom: Customization) -> tuple[Listed, ...]:
     return tuple(found)
 
 
+def blocks_of(folder: Path) -> dict[str, tuple[str, ...]]:
+    """The blocks of the templates in a folder, by template."""
+    paths = sorted(folder.rglob("*.j2"))
+    return {path.relative_to(folder).as_posix(): _blocks(_parsed(path)) for path in paths}
+
+
 def type_name(type_: object) -> str:
     """A type as a reader wants to see it: `InterfaceModule`, `tuple[Package, ...]`."""
     return type_.__name__ if isinstance(type_, type) else re.sub(r"\b[a-z_.]+\.(?=\w)", "", str(type_))

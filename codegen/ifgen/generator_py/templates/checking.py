@@ -46,6 +46,9 @@ class _Check:
         self._ours = files(resources.templates())
         self._own = {name: path for folder in custom.folders for name, path in files(folder).items()}
         self._paths = {**{_OURS + name: path for name, path in self._ours.items()}, **self._ours, **self._own}
+        if custom.behind is not None and custom.behind_name is not None:
+            originals = files(custom.behind)
+            self._paths |= {f"{custom.behind_name}/{name}": path for name, path in originals.items()}
         self._parsed: dict[str, Template] = {}
 
     def problems(self) -> list[Diagnostic]:
@@ -53,7 +56,7 @@ class _Check:
             return conflicts  # what else there is to say would be about their marks
         found = [_unknown(o, self._paths) for o in self._custom.outputs if o.template not in self._paths]
         found += filter(None, map(_trimmed, self._own.values()))
-        found += [_unused(self._own[name], name, self._ours) for name in self._unused()]
+        found += [self._replaces_nothing(name) for name in self._unused()]
         touched = [name for name in TEMPLATES if not self._own.keys().isdisjoint(self._used_by(name))]
         found += self.checked(touched if self._own or self._custom.outputs else TEMPLATES).found()
         return [*found, *self._refused({d.primary.span.source.path for d in found if d.primary})]
@@ -81,6 +84,17 @@ class _Check:
             if template is not None and path not in broken:
                 problem = refusal(template, self._environment)
                 yield from [problem] if problem else []
+
+    def _replaces_nothing(self, name: str) -> Diagnostic:
+        whose, advice = self._custom.behind_name or "ifgen", "`ifgen templates list` names all of them"
+        others: Iterable[str] = self._ours
+        if self._custom.behind_name is not None and self._custom.behind is not None:
+            others, advice = files(self._custom.behind), f"`ifgen generators describe {whose}` names them"
+        close = get_close_matches(name, others, n=1)
+        message = (
+            f"{self._own[name]} replaces nothing: {whose} has no template {name}, and none of yours uses it"
+        )
+        return Diagnostic("unused-template", message, help=f"did you mean {close[0]}?" if close else advice)
 
     def _used_by(self, root: str) -> set[str]:
         """A template and all that it and they name: more than they use, perhaps, but nothing is left out."""
@@ -137,13 +151,6 @@ def _trimmed(path: Path) -> Diagnostic | None:
     advice = "write `{%`: ifgen removes the line of a tag that stands alone, as trim_blocks of jinja2 does"
     message = "`{%-` removes the line break before it"
     return Diagnostic("trimmed-line", message, label, help=advice, severity="warning")
-
-
-def _unused(path: Path, name: str, ours: dict[str, Path]) -> Diagnostic:
-    close = get_close_matches(name, ours, n=1)
-    advice = f"did you mean {close[0]}?" if close else "`ifgen templates list` names all of them"
-    message = f"{path} replaces nothing: ifgen has no template {name}, and none of yours uses it"
-    return Diagnostic("unused-template", message, help=advice)
 
 
 def _unknown(output: Output, known: dict[str, Path]) -> Diagnostic:

@@ -100,7 +100,7 @@ def look_for_problems(custom: Customization) -> list[Diagnostic]:
 
 
 def _environment_for(custom: Customization) -> jinja2.Environment:
-    environment = _environment(tuple(folder.absolute() for folder in custom.folders))
+    environment = _environment(tuple(folder.absolute() for folder in custom.folders), custom.behind_name)
     if custom.filters is None:
         return environment
     additions = load(custom.filters.absolute(), environment)
@@ -114,11 +114,14 @@ def _environment_for(custom: Customization) -> jinja2.Environment:
 
 
 @cache
-def _environment(folders: tuple[Path, ...]) -> jinja2.Environment:
+def _environment(folders: tuple[Path, ...], behind_name: str | None) -> jinja2.Environment:
     ours = jinja2.FileSystemLoader(resources.templates())
+    originals: dict[str, jinja2.BaseLoader] = {"ifgen": ours}
+    if behind_name is not None:
+        originals[behind_name] = jinja2.FileSystemLoader(folders[0])
     replacements = map(jinja2.FileSystemLoader, reversed(folders))
     environment = jinja2.Environment(
-        loader=jinja2.ChoiceLoader([*replacements, ours, jinja2.PrefixLoader({"ifgen": ours})]),
+        loader=jinja2.ChoiceLoader([*replacements, ours, jinja2.PrefixLoader(originals)]),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import TypeVar
 
 from ifgen.config.customization import Customization, Target
 from ifgen.config.customization import Output as UsersOutput
-from ifgen.diagnostics import Diagnostic, InputError, Label, Span, any_errors
+from ifgen.diagnostics import Diagnostic, InputError, Label, Span, any_errors, shown_path
 from ifgen.generator_py.outputs.plan import plan_outputs
 from ifgen.generator_py.templates.parsed import wrong_text
 from ifgen.generator_py.templates.render import Templates
@@ -18,7 +18,8 @@ from ifgen.generators import File, Finding, Generator, Request, Response
 from ifgen.generators.protocol import generate_request
 from ifgen.model import Model
 from ifgen.pipeline.generators import narrowing
-from ifgen.pipeline.generators.find import failure, find, option_values
+from ifgen.pipeline.generators.find import find, option_values
+from ifgen.pipeline.generators.programs import failure, formatted
 from ifgen.pipeline.model import BuiltModel
 from ifgen.reading import manifest
 from ifgen.writing.write import TargetFolder
@@ -41,7 +42,7 @@ def run_targets(
     problems: list[Diagnostic] = []
     found: list[Diagnostic] = []
     made: dict[Path, dict[str, str | bytes]] = {}
-    owners: dict[str, str] = {}
+    owners: dict[str, tuple[Target, File]] = {}
     for target in targets:
         try:
             files, diagnostics = _Run(target, built, ask).files()
@@ -52,13 +53,26 @@ def run_targets(
         folder = made.setdefault(target.out, {})
         for file in files:
             path = str((target.out / file.path).absolute()).casefold()  # one file on some disks
-            if owners.setdefault(path, target.name) != target.name:
-                message = f"generators '{owners[path]}' and '{target.name}' both write {file.path}"
-                problems.append(failure(target.span, message, "choose another `out` for one of them"))
+            owner, _ = owners.setdefault(path, (target, file))
+            if owner is not target:
+                message = f"generators '{owner.name}' and '{target.name}' both write {file.path}"
+                advice = "choose another `out` for one of them"
+                problems.append(failure(target.place("out"), message, advice))
             folder[file.path] = file.content
+    problems += _files_in_files(owners)
     if problems:
         raise InputError([*problems, *found])
     return TargetResult(tuple(TargetFolder(out, files) for out, files in made.items()), tuple(found))
+
+
+def _files_in_files(owners: Mapping[str, tuple[Target, File]]) -> Iterator[Diagnostic]:
+    for path, (target, file) in owners.items():
+        for parent in Path(path).parents:
+            if found := owners.get(str(parent)):
+                owner, other = found
+                message = f"generator '{target.name}' writes {file.path}, but {other.path} is a file"
+                message += f" of generator '{owner.name}'" if owner is not target else ", too"
+                yield failure(target.place("out"), message)
 
 
 class _Run:
@@ -67,6 +81,7 @@ class _Run:
     def __init__(self, target: Target, built: BuiltModel, ask: Callable[[Request], str]) -> None:
         self._target = target
         self._spans = built.spans
+        self._place = target.place("command" if target.command else "use")
         self._generator = find(target, ask)
         self._options = option_values(target, self._generator)
         self._skipped: list[Diagnostic] = []
@@ -78,6 +93,8 @@ class _Run:
         findings: tuple[Finding, ...] = self._called(generator.check) if generator.check else ()
         files: list[File] = []
         said = [self._diagnostic(finding) for finding in findings]
+        if self._target.templates is not None:
+            self._check_templates(self._target.templates)
         if not any_errors(said) and generator.outputs:
             files += self._from_templates(generator)
         if not any_errors(said) and generator.generate:
@@ -88,13 +105,15 @@ class _Run:
         errors += self._wrong_files(files)
         if errors:
             raise InputError(errors)
-        return tuple(files), (*self._skipped, *said)
+        return tuple(formatted(self._target, files)), (*self._skipped, *said)
 
     def _narrowed(self, model: Model) -> Model:
         target, generator = self._target, self._generator
         if unmatched := narrowing.unmatched(model, target.only):
             raise InputError(
-                failure(target.span, f"target '{target.name}': '{pattern}' in `only` matches nothing")
+                failure(
+                    target.place("only"), f"target '{target.name}': '{pattern}' in `only` matches nothing"
+                )
                 for pattern in unmatched
             )
         chosen = narrowing.wanted(model, target.only, with_deps=target.with_deps)
@@ -131,14 +150,14 @@ class _Run:
             *_, frame = traceback.extract_tb(error.__traceback__)
             place = f"{Path(frame.filename).name}:{frame.lineno}"
             message = f"generator '{self._generator.name}' failed: {type(error).__name__}: {error} ({place})"
-            raise InputError([failure(self._target.span, message)]) from error
+            raise InputError([failure(self._place, message)]) from error
 
     def _from_templates(self, generator: Generator) -> Iterator[File]:
         outputs = tuple(
-            UsersOutput(f"{generator.name}: {o.template}", o.template, o.path, o.per, span=self._target.span)
+            UsersOutput(f"{generator.name}: {o.template}", o.template, o.path, o.per, span=self._place)
             for o in generator.outputs
         )
-        custom = Customization(generator.templates, generator.filters, outputs)
+        custom = _set_of(generator, self._target, outputs)
         model = self._request.model
         packages = [
             replace(package, interfaces=tuple(i for i in package.interfaces if i.generate))
@@ -150,9 +169,21 @@ class _Run:
         for planned in plan_outputs(outputs, packages, {}, variables, own_folder=True):
             yield File(planned.artifact.path, templates.render(planned.artifact).text)
 
+    def _check_templates(self, folder: Path) -> None:
+        name = self._generator.name
+        if self._generator.templates is None:
+            message = f"generator '{name}' has no templates that '{shown_path(folder)}' could replace"
+            copied = f"`ifgen generators new NAME --from {name}` makes a copy that you can change"
+            advice = None if self._target.command else copied
+            raise InputError([failure(self._target.place("templates"), message, advice)])
+
     def _diagnostic(self, finding: Finding) -> Diagnostic:
         span = self._spans.get(finding.element) if finding.element else None
-        place: Span | None = span or self._target.span
+        if finding.element and span is None and finding.element not in _ids(self._request.model):
+            name, element = self._generator.name, finding.element
+            message = f"generator '{name}' names an element that is not in the model: {element!r}"
+            return failure(self._place, message, f"it says: {finding.message}")
+        place: Span | None = span or self._place
         about = "" if span is not None or finding.element is None else f" ({finding.element})"
         return Diagnostic(
             "generator",
@@ -167,14 +198,32 @@ class _Run:
         for file in files:
             if wrong := _wrong_path(file.path):
                 message = f"generator '{self._generator.name}' wants to write {file.path!r}: {wrong}"
-                yield failure(self._target.span, message)
+                yield failure(self._place, message)
             elif file.path.casefold() in seen:
                 message = f"generator '{self._generator.name}' writes {file.path} twice"
-                yield failure(self._target.span, message)
+                yield failure(self._place, message)
             elif isinstance(file.content, str):
                 problem = wrong_text(file.path, file.content, f"generator '{self._generator.name}'")
                 yield from [problem] if problem else []
             seen.add(file.path.casefold())
+
+
+def _ids(model: Model) -> Iterator[str]:
+    """The ids of all elements; those of derived messages have no place in a file."""
+    for package in model.packages:
+        yield from (interface.id for interface in package.interfaces)
+    for message in model.types:
+        yield message.id
+        yield from (field.id for field in message.fields)
+        yield from (constant.id for constant in message.constants)
+
+
+def _set_of(generator: Generator, target: Target, outputs: tuple[UsersOutput, ...]) -> Customization:
+    """The templates of a generator, with those of the user's in front of them."""
+    if target.templates is None:
+        return Customization(generator.templates, generator.filters, outputs)
+    behind, name = generator.templates, generator.name
+    return Customization(target.templates, generator.filters, outputs, behind=behind, behind_name=name)
 
 
 def _wrong_path(text: str) -> str | None:
