@@ -107,3 +107,24 @@ def owner(workspace: Workspace, symbol: Symbol) -> str:
     if isinstance(workspace.registry().get(symbol.type_name), Message) or symbol.kind == "type":
         return symbol.type_name
     return symbol.type_name.rpartition("_")[0]
+
+
+def test_a_package_is_renamed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for package in PACKAGES:
+        shutil.copytree(ROOT / "interfaces" / package, tmp_path / package)
+        (tmp_path / package / "CMakeLists.txt").unlink(missing_ok=True)
+    monkeypatch.chdir(tmp_path)
+    workspace = Workspace(tmp_path)
+    before = hashes(workspace.registry())
+    interface = workspace.interface("geometry_msgs/msg/Pose")
+    assert interface is not None and interface[0].source is not None
+    symbol = Symbol("package", "geometry_msgs/msg/Pose", Span(interface[0].source, 0, 0))
+    renaming = rename.renaming_of(workspace, symbol, "shape_msgs2")
+    assert renaming.moves == {tmp_path / "geometry_msgs": tmp_path / "shape_msgs2"}
+    applied(workspace, renaming)
+    workspace.files_changed()
+    assert [each for each in workspace.all_findings() if each.severity == "error"] == []
+    after = hashes(workspace.registry())
+    assert after.keys() == {name.replace("geometry_msgs/", "shape_msgs2/") for name in before}
+    assert after["std_msgs/msg/Header"] == before["std_msgs/msg/Header"]
+    assert after["sensor_msgs/msg/Imu"] != before["sensor_msgs/msg/Imu"]
