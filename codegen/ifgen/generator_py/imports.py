@@ -30,9 +30,10 @@ IN_MESSAGES: Final = _homes(
         "array": "array",
         "collections.abc": "Iterable Sequence",
         "enum": "IntEnum",
-        "typing": "Any ClassVar Final TypeAlias",
+        "typing": "Annotated Any ClassVar Final TypeAlias",
         "": "numpy",
         "numpy.typing": "NDArray",
+        "ifgen_runtime": "meaning",
         "ifgen_runtime.copying": (
             "ITERABLES array_repr arrays copied_array copied_list copied_other deepcopy_of new_array "
             "new_object repr_name repr_of_fields unequal"
@@ -161,6 +162,7 @@ _FOR_TYPE_CHECKERS: Final = {
     "typing",
     "enum",
     "numpy.typing",
+    "ifgen_runtime",
     "ifgen_runtime.views",
     "",
 }
