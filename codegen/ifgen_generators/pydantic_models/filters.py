@@ -17,8 +17,8 @@ def model(message: TypeReference) -> str:
 
 def imports(interface: Interface, package: str, converts: bool) -> list[str]:
     """The import statements of a module of `package`, in the order that isort wants."""
-    types = [field.type for message in interface.messages for field in message.fields]
-    names = ["Annotated"] if any("Annotated" in annotation(type_) for type_ in types) else []
+    types = [(field.type, field) for message in interface.messages for field in message.fields]
+    names = ["Annotated"] if any("Annotated" in annotation(*typed) for typed in types) else []
     if any(message.constants for message in interface.messages):
         names.append("ClassVar")
     others = [f"from pydantic import BaseModel, ConfigDict{', Field' if types else ''}"]
@@ -30,9 +30,15 @@ def imports(interface: Interface, package: str, converts: bool) -> list[str]:
     return [*([f"from typing import {', '.join(names)}", ""] if names else []), *sorted(others)]
 
 
-def annotation(type_: FieldType) -> str:
-    """The annotation of a field, with the bounds of its type."""
+def annotation(type_: FieldType, field: Field | None = None) -> str:
+    """The annotation of a field, with the bounds of its type, or the narrower ones of its meaning."""
+    low: float | None
+    high: float | None
     low, high = (0, 255) if type_.base == "byte" else (type_.minimum, type_.maximum)
+    bounds = field.meanings.range if field and not field.meanings.invalid else None
+    if bounds and type_.base in {"int", "float"}:
+        low = low if bounds.minimum is None else bounds.minimum
+        high = high if bounds.maximum is None else bounds.maximum
     element = model(type_.message) if type_.message else _PYTHON[type_.base]
     if type_.base == "char":
         return _many("Annotated[str, Field(min_length=1, max_length=1)]", type_)
@@ -65,9 +71,10 @@ def default_value(field: Field) -> str:
 
 
 def description(field: Field) -> str:
-    """The first line about a field in the interface, and its unit, as a Python literal."""
-    text = field.documentation.partition("\n")[0]
-    return repr(f"{text} [{field.unit}]".strip() if field.unit else text)
+    """The first line about a field in the interface, and its meaning, as a Python literal."""
+    text, summary = field.documentation.partition("\n")[0], field.meanings.summary
+    texts = (text, f"[{field.unit}]" if field.unit else "", f"({summary})" if summary else "")
+    return repr(" ".join(filter(None, texts)))
 
 
 def docstring_text(text: str) -> str:
@@ -99,10 +106,10 @@ def _each(value: str, type_: FieldType, element: str) -> str:
     return value if element == "{}" else f"[{element.format('e')} for e in {value}]"
 
 
-def _bounded(annotation: str, **bounds: int | None) -> str:
+def _bounded(annotation: str, **bounds: float | None) -> str:
     given = ", ".join(f"{name}={value}" for name, value in _given(bounds).items())
     return f"Annotated[{annotation}, Field({given})]" if given else annotation
 
 
-def _given(bounds: dict[str, int | None]) -> dict[str, int]:
+def _given(bounds: dict[str, float | None]) -> dict[str, float]:
     return {name: value for name, value in bounds.items() if value is not None}

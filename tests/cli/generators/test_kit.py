@@ -73,7 +73,7 @@ def test_what_the_kit_finds(ifgen: Run, tmp_path: Path, problem: str) -> None:
 def test_list_and_describe(ifgen: Run) -> None:
     assert re.search(r"^json-schema +JSON Schema", ifgen("generators", "list").out, re.MULTILINE)
     assert 'int64 = "number"  ("number" | "string")' in ifgen("generators", "describe", "json-schema").out
-    assert json.loads(ifgen("generators", "describe", "json-schema", "--json").out)["model"] == "1.0"
+    assert json.loads(ifgen("generators", "describe", "json-schema", "--json").out)["model"] == "1.1"
     assert "did you mean 'json-schema'?" in ifgen("generators", "describe", "json-shema").err
 
 

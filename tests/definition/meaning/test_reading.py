@@ -284,7 +284,7 @@ PIECES = st.sampled_from(
     """
     [ ] [@ @ range enum frame invalid deprecated unit [[ ]] ( ) , - 0 3 1e999 0x inf NaN pi nan if in m/s rad
     [m] [@range [@enum MODE \u00b0 \u00b5s ^ ** / per unit: unknown -1 \\ " ' # \U0001f916
-    """.split()  # noqa: SIM905  # a list of so many strings is harder to read
+    """.split()  # noqa: SIM905  # a list of thirty strings is harder to read
 )
 
 

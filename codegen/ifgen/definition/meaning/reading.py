@@ -55,7 +55,7 @@ _IN_BRACKETS: Final = re.compile(r"(?<!\S)\((?:in )?(?P<unit>[^()\s][^()]{0,30})
 _SHORT: Final = frozenset(
     """
     m s V A N W K Hz Ah cm mm km kg ms us ns mV mA deg rad min rpm
-    """.split()  # noqa: SIM905  # a list of so many strings is harder to read
+    """.split()  # noqa: SIM905  # a list of thirty strings is harder to read
 )
 """The units of one to three letters that prose means; other such words are as often something else."""
 _NO_DATA: Final = re.compile(
@@ -70,6 +70,7 @@ _DEPRECATED: Final = re.compile(
     r"|\[\[deprecated(?:\([\"']?(?P<quoted>[^()\"'\n]*)[\"']?\))?\]\]",
     re.IGNORECASE | re.MULTILINE,
 )
+_FLAGS: Final = re.compile(r"\bbit|\bflags?\b|\bmask", re.IGNORECASE)
 _HINT: Final = re.compile(r"[\[(@%]|\bin\b|\bunits?\b|\bnan\b|\bif\b|deprecated", re.IGNORECASE)
 
 
@@ -100,6 +101,11 @@ def named_constants(field: Field, message: Message) -> tuple[Constant, ...]:
     """The constants that `[@enum NAME]` of a field names, in the order of the definition."""
     prefixes = tuple(f"{name}_" for name in meaning_of(field).enum)
     return tuple(each for each in message.constants if prefixes and each.name.startswith(prefixes))
+
+
+def is_closed(field: Field) -> bool:
+    """Whether the constants of `[@enum NAME]` are all the values of a field, and no set of flags."""
+    return bool(meaning_of(field).enum) and not _FLAGS.search(field.documentation)
 
 
 def mistakes_of(field: Field, constants: Iterable[str]) -> Iterator[Mistake]:

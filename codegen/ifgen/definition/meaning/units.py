@@ -20,13 +20,13 @@ Powers = dict[str, int]
 _PREFIXED: Final = frozenset(
     """
     m g s A K N J W V F T H C L Pa Hz rad bar Ah Wh eV Ohm lx lm bps B
-    """.split()  # noqa: SIM905  # a list of so many strings is harder to read
+    """.split()  # noqa: SIM905  # a list of thirty strings is harder to read
 )
 _PREFIXES: Final = ("G", "M", "k", "h", "d", "c", "m", "u", "n", "p", "Ki", "Mi", "K")
 _ALONE: Final = frozenset(
     """
     deg degC degF min h rpm px % dB dBm lb ft mi kn in gauss b kb Kb Mb Gb cell count
-    """.split()  # noqa: SIM905  # a list of so many strings is harder to read
+    """.split()  # noqa: SIM905  # a list of thirty strings is harder to read
 )
 _DERIVED: Final[Mapping[str, str]] = {
     **{"N": "kg m/s^2", "J": "N m", "W": "J/s", "Pa": "N/m^2", "bar": "Pa", "V": "W/A", "Ohm": "V/A"},
