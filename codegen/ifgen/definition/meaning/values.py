@@ -63,6 +63,11 @@ class Meaning:
         return self != NOTHING
 
 
+_ANGLES: Final = {
+    sign * value: f"{'-' if sign < 0 else ''}{name}"
+    for value, name in ((math.pi, "pi"), (2 * math.pi, "2 pi"), (math.pi / 2, "pi/2"))
+    for sign in (1, -1)
+}
 NOTHING: Final = Meaning()
 """The meaning of a field whose comment and annotations say nothing about it."""
 
@@ -74,8 +79,12 @@ def words(meaning: Meaning) -> str:
 
 def range_words(range_: Range) -> str:
     """A range in words: `0 to 3`, `at least 0`."""
-    low, high = range_.minimum, range_.maximum
+    low, high = map(_spelled, (range_.minimum, range_.maximum))
     return f"at most {high}" if low is None else f"at least {low}" if high is None else f"{low} to {high}"
+
+
+def _spelled(value: Number | None) -> str | None:
+    return None if value is None else _ANGLES.get(value, str(value))
 
 
 def _words(meaning: Meaning) -> Iterator[str]:
@@ -84,7 +93,7 @@ def _words(meaning: Meaning) -> Iterator[str]:
     if meaning.range:
         yield range_words(meaning.range)
     if meaning.enum:
-        yield " or ".join(f"{name}_..." for name in meaning.enum)
+        yield " or ".join(f"{name}_*" for name in meaning.enum)
     if meaning.frame:
         yield f"frame {meaning.frame}"
     if meaning.invalid:
