@@ -85,17 +85,21 @@ _MARKERS: Mapping[str, type[Any]] = {
 def meanings(cls: type[Message]) -> Mapping[str, tuple[Marker, ...]]:
     """The markers of each field of a generated message class that has any, by the name of its attribute.
 
-    The annotations are text that only type checkers import names for, so this reads the text.
+    This reads the text of annotations: type checkers alone know the names of the types in some of them.
     """
     found: dict[str, tuple[Marker, ...]] = {}
     generated = generated_class(cls)
-    texts = dict(generated.__annotations__)
+    annotations: dict[str, Any] = dict(generated.__annotations__)
     for name, attribute in vars(generated).items():
         if isinstance(attribute, property) and attribute.fget is not None:
-            texts[name] = attribute.fget.__annotations__.get("return", "")
-    for name, text in texts.items():
-        if isinstance(text, str) and "meaning" in text and (markers := tuple(_markers(text))):
-            found[name] = markers
+            annotations[name] = attribute.fget.__annotations__.get("return", "")
+    for name, annotation in annotations.items():
+        if isinstance(annotation, str):
+            markers = _markers(annotation) if "meaning" in annotation else []
+        else:  # of a class that was made at run time
+            markers = [each for each in getattr(annotation, "__metadata__", ()) if isinstance(each, Marker)]
+        if markers:
+            found[name] = tuple(markers)
     return found
 
 

@@ -168,6 +168,10 @@ _FOR_TYPE_CHECKERS: Final = {
 }
 
 
+_IN_HINTS: Final = {"Annotated", "meaning"}
+"""The names that `typing.get_type_hints` needs at run time."""
+
+
 class Scope(Names):
     """The names that the module of an interface uses.
 
@@ -228,7 +232,9 @@ class Scope(Names):
     def lazy_imports(self) -> tuple[str, ...]:
         """The replacements of those of `typing_imports` that are used at run time."""
         return statements(
-            ("ifgen_runtime.lazy", name, spelling) for module, name, spelling in self._used if not module
+            ("ifgen_runtime.lazy", name, spelling)
+            for module, name, spelling in self._used
+            if not module or name in _IN_HINTS
         )
 
     @property

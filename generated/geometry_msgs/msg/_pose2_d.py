@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from typing import Annotated, Any, ClassVar
 
     from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from typing import Annotated, Any, ClassVar, Final, TypeAlias
 
     from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 

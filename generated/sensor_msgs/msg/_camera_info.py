@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from ifgen_runtime.views import Float64Array
     from numpy.typing import NDArray
 else:
-    from ifgen_runtime.lazy import numpy
+    from ifgen_runtime.lazy import Annotated, meaning, numpy
 
 _check_fields = checks_by_default()
 

@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
     from ifgen_runtime import meaning
     from ifgen_runtime.views import Float32Array
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 

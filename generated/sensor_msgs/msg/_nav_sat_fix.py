@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from ifgen_runtime import meaning
     from numpy.typing import NDArray
 else:
-    from ifgen_runtime.lazy import numpy
+    from ifgen_runtime.lazy import Annotated, meaning, numpy
 
 _check_fields = checks_by_default()
 

@@ -34,6 +34,9 @@ if TYPE_CHECKING:
     from typing import Final as Final_
 
     from ifgen_runtime import meaning as meaning_
+else:
+    from ifgen_runtime.lazy import Annotated as Annotated_
+    from ifgen_runtime.lazy import meaning as meaning_
 
 _check_fields = checks_by_default_()
 
