@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, TypeAlias
 
 from ifgen.definition.meaning.units import NO_UNIT
@@ -75,6 +75,13 @@ NOTHING: Final = Meaning()
 def words(meaning: Meaning) -> str:
     """The meaning in a few words: `unit m/s, 0 to 3, frame NED, NaN: no data`; empty for `NOTHING`."""
     return ", ".join(_words(meaning))
+
+
+def bracketed(meaning: Meaning) -> str:
+    """The meaning as a comment may have it: `[m/s]`, `[m/s, 0 to 3, frame NED]`; empty for `NOTHING`."""
+    unit = [meaning.unit] if meaning.unit else []
+    found = ", ".join([*unit, *_words(replace(meaning, unit=None))])
+    return f"[{found}]" if found else ""
 
 
 def range_words(range_: Range) -> str:
