@@ -12,10 +12,9 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from ifgen.definition.interfaces import Annotation, Constant, Field, Message
-from ifgen.definition.meaning.tags import Kind, Mistake, number, read_tag, unclosed
 from ifgen.definition.meaning.units import NO_UNIT, is_unit, normal
 from ifgen.definition.meaning.values import NOTHING, Invalid, Meaning, Range
 from ifgen.definition.types import (
@@ -26,6 +25,9 @@ from ifgen.definition.types import (
     UnboundedSequence,
     element_of,
 )
+
+if TYPE_CHECKING:
+    from ifgen.definition.meaning.tags import Kind, Mistake
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,13 +78,13 @@ _HINT: Final = re.compile(r"[\[(@%]|\bin\b|\bunits?\b|\bnan\b|\bif\b|deprecated"
 
 def meaning_of(described: Field | Constant) -> Meaning:
     """The meaning of a field or a constant; `NOTHING` if neither its comment nor annotations say any."""
-    if not described.documentation and described.unit is None and not described.annotations:
-        return NOTHING
     return reading_of(described).meaning
 
 
 def reading_of(described: Field | Constant) -> Reading:
     """The comment of a field or a constant without its tags, and their meaning."""
+    if described.unit is None and not described.annotations and not _HINT.search(described.documentation):
+        return Reading(described.documentation)
     kind = _kind(described)
     found = _read(described.documentation, described.unit, kind, _has_one_unit(described))
     return _annotated(found, described.annotations, kind) if described.annotations else found
@@ -110,6 +112,8 @@ def is_closed(field: Field) -> bool:
 
 def mistakes_of(field: Field, constants: Iterable[str]) -> Iterator[Mistake]:
     """The tags of a field that cannot be read, or that name none of the constants of its message."""
+    from ifgen.definition.meaning.tags import Mistake  # late: few comments have tags
+
     found = reading_of(field)
     yield from found.mistakes
     names = tuple(constants)
@@ -152,8 +156,6 @@ def _has_one_unit(described: Field | Constant) -> bool:
 @lru_cache(maxsize=1024)
 def _read(documentation: str, unit: str | None, kind: Kind, reads_prose: bool) -> Reading:
     """Read a comment. `unit` is its only bracket, which rosidl takes out of the text, if it has one."""
-    if unit is None and not _HINT.search(documentation):
-        return Reading(documentation)
     return _CommentReader(documentation, kind).read(unit, reads_prose=reads_prose)
 
 
@@ -162,7 +164,7 @@ class _CommentReader:
 
     def __init__(self, documentation: str, kind: Kind) -> None:
         self._text = documentation
-        self._kind = kind
+        self._kind: Kind = kind
         self._meaning = NOTHING
         self._mistakes: list[Mistake] = []
         self._tags: set[str] = set()
@@ -171,6 +173,8 @@ class _CommentReader:
         """The rest of the text, and the meaning."""
         if "@" in self._text:
             self._text = _TAG.sub(self._tag, self._text)
+            from ifgen.definition.meaning.tags import unclosed  # late: few comments have tags
+
             for match in _UNCLOSED.finditer(self._text):
                 mistake = unclosed(match["name"], match[0].rstrip())
                 self._mistakes += [mistake] if mistake else []
@@ -203,6 +207,8 @@ class _CommentReader:
         return normal(content) is not None or (is_for_numbers and len(content) > 2) or is_unit(content)
 
     def _tag(self, match: re.Match[str]) -> str:
+        from ifgen.definition.meaning.tags import Mistake, read_tag  # late: few comments have tags
+
         name, tag = match["name"], match[0].rstrip()
         if name in self._tags:
             self._mistakes.append(Mistake(tag, f"there are two `@{name}`", "remove one of them"))
@@ -266,6 +272,8 @@ def _no_data(text: str, kind: Kind) -> float | int | None:
 
 def _annotated(found: Reading, annotations: Sequence[Annotation], kind: Kind) -> Reading:
     """Add the annotations of an .idl file, which say more than comments."""
+    from ifgen.definition.meaning.tags import Mistake  # late: few fields have annotations
+
     meaning, mistakes = found.meaning, list(found.mistakes)
     for annotation in annotations:
         values = dict(annotation.parameters)
@@ -292,8 +300,8 @@ def _annotated(found: Reading, annotations: Sequence[Annotation], kind: Kind) ->
 def _bound(value: object) -> float | int | None:
     """A bound of a range; None if it is none, or infinite."""
     if isinstance(value, bool) or not isinstance(value, int | float):
-        value = number(value) if isinstance(value, str) else None
-    return None if value is None or math.isinf(value) else value
+        return None
+    return value if math.isfinite(value) else None
 
 
 def _advice(annotation: Annotation) -> str:

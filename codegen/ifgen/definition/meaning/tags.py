@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from typing import Final, Literal, TypeAlias
 
 from ifgen.definition.meaning.values import Invalid, Meaning, Number, Range
@@ -56,6 +55,8 @@ def read_tag(meaning: Meaning, name: str, rest: str, tag: str, kind: Kind) -> Me
         case "deprecated":
             return replace(meaning, deprecated=rest)
         case _:
+            from difflib import get_close_matches  # late: few tags are unknown
+
             near = get_close_matches(name.lower(), _NAMES, n=1, cutoff=0.75)
             advice = f"did you mean `@{near[0]}`?" if near else ""
             return Mistake(tag, f"there is no tag `@{name}`", advice) if near else None
