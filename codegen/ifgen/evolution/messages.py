@@ -163,7 +163,7 @@ def _commented(field: Field) -> object:
 
 
 def _meanings(within: Versions, old: Field, new: Field) -> Iterator[MessageEdit]:
-    """What the comments of a field say differently: a change of the meaning, not of the wire."""
+    """The differences between the comments of a field: they change its meaning, not the wire."""
     from ifgen.definition.meaning.comparison import differences  # late: few comments change
     from ifgen.definition.meaning.reading import meaning_of
 

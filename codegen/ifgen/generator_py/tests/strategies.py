@@ -206,7 +206,7 @@ def _within(type_: BasicType, meaning: Meaning) -> str:
 
 
 def _floats(range_: Range, bits: int) -> str:
-    """Floats in a range whose bounds are floats of so many bits, as hypothesis wants them."""
+    """Floats in a range, whose bounds become floats of the given number of bits."""
     low, high = (None if bound is None else float(bound) for bound in (range_.minimum, range_.maximum))
     if bits == 32:
         low, high = _float32(low, math.inf), _float32(high, -math.inf)
