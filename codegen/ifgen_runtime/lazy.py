@@ -8,9 +8,11 @@ TYPE_CHECKING = False  # typing itself takes longer to import than a message pac
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
     from types import ModuleType
-    from typing import Any
+    from typing import Annotated, Any
 
     import numpy
+
+    from ifgen_runtime import meaning
 
     LazyModule = ModuleType
 else:
@@ -24,9 +26,19 @@ else:
             self.__class__ = ModuleType
             return getattr(self, name)
 
-    numpy = LazyModule("numpy")
+    class _Annotated:
+        """`typing.Annotated`, imported with the first type hint that is asked for."""
 
-__all__ = ["LazyModule", "lazy_exports", "numeric", "numpy"]
+        def __getitem__(self, parts: Any) -> Any:
+            from typing import Annotated  # takes longer to import than a message package
+
+            return Annotated[parts]
+
+    numpy = LazyModule("numpy")
+    meaning = LazyModule("ifgen_runtime.meaning")
+    Annotated = _Annotated()
+
+__all__ = ["Annotated", "LazyModule", "lazy_exports", "meaning", "numeric", "numpy"]
 
 
 def import_module(name: str) -> ModuleType:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ifgen.definition.interfaces import Constant, Field, Message, Registry, Service
+from ifgen.definition.meaning.reading import reading_of
+from ifgen.definition.meaning.values import bracketed
 from ifgen.definition.spelling import spelled, spelled_value
 from ifgen.definition.type_description import Described, type_hash
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
@@ -69,8 +71,8 @@ def _message(message: Message, registry: Registry, indent: str, *, with_comments
 def _with_comment(
     text: str, described: Field | Constant, indent: str, *, with_comments: bool
 ) -> Iterator[str]:
-    unit = f" [{described.unit}]" if described.unit else ""
-    comment = described.documentation + unit if with_comments else ""
+    found = reading_of(described)
+    comment = f"{found.text} {bracketed(found.meaning)}".strip() if with_comments else ""
     beside = f"{indent}{text}  # {comment.strip()}" if comment.strip() else indent + text
     if "\n" in comment or len(beside) > _WIDTH:
         yield from _comment(comment, indent)

@@ -75,6 +75,7 @@ class _Builder:
         self._folder: Folder = folder
         self._problems = problems
         self._has_backslash = "\\" in source.text
+        self._has_tags = "[@" in source.text
 
     def message(self, part: PartNode, name: str) -> Message:
         """The message that a part defines."""
@@ -87,6 +88,10 @@ class _Builder:
                 self._constant(node, constants)
         for place in part.optionals:
             self._problems.warning(rules.optional_field, self._span(place, OPTIONAL))
+        if self._has_tags:
+            from ifgen.definition.meaning.check import check_tags  # late: few files have tags
+
+            check_tags(fields.values(), constants, self._problems)
         if len(fields) == 1 and names.PLACEHOLDER in fields:
             fields.clear()
         start = Span(self._source, 0, 0)
@@ -126,7 +131,7 @@ class _Builder:
             if unit is not None and "\n" in unit:
                 self._problems.warning(rules.bracket_over_lines, span)
                 unit = None
-            if unit is not None:
+            if unit is not None and not unit.startswith("@"):
                 rules.check_unit(unit, node.comments, span, self._problems)
             fields[name] = Field(name, type_, value, text, unit, span)
 

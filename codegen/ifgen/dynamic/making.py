@@ -106,7 +106,7 @@ def _resolve_hints(module: dict[str, Any]) -> None:
     """Put classes in the place of names in annotations: no import finds the module that has these names."""
     for cls in module.values():
         if "__type_hash__" in getattr(cls, "__dict__", ()) and cls.__module__ == module["__name__"]:
-            cls.__annotations__ = get_type_hints(cls, module)
+            cls.__annotations__ = get_type_hints(cls, module, include_extras=True)
 
 
 def _restored(type_name: str, definition: tuple[Described, ...]) -> type[Any]:

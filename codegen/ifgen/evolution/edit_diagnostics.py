@@ -40,13 +40,13 @@ class Finding(NamedTuple):
 
 
 def diagnostic(difference: Difference) -> Diagnostic | None:
-    """The diagnostic about a difference, as a warning; None if the difference breaks no category."""
+    """The diagnostic about a difference, as a warning; None if it breaks nothing and changes no meaning."""
     finding = _finding(difference)
     broken = broken_by(difference.edit)
-    if finding is None or not broken:
+    if finding is None or not (broken or isinstance(difference.edit, edits.MeaningChanged)):
         return None
     breaks = tuple(category.value for category in edits.Category if category in broken)
-    help = f"this breaks {_listed(breaks)}"
+    help = f"this breaks {_listed(breaks)}" if broken else "type hash and bytes are as before, values are not"
     if others := _others(difference):
         help += f". It also changes {others}"
     new, old = _label(*finding.new), _label(*finding.old)
@@ -83,6 +83,7 @@ def _finding(difference: Difference) -> Finding | None:
             | edits.FieldMoved()
             | edits.FieldRetyped()
             | edits.DefaultChanged()
+            | edits.MeaningChanged()
             | edits.ConstantAdded()
             | edits.ConstantRemoved()
             | edits.ConstantRenamed()
@@ -115,6 +116,9 @@ def _in_message(edit: edits.MessageEdit, owner: str) -> Finding | None:
         case edits.DefaultChanged(_, old, new):
             message = f"the default of {owner}.{new.name} {_was(_default(old), _default(new))}"
             return Finding("default-value", message, (new.span, ""), (old.span, "before"))
+        case edits.MeaningChanged(_, old, new, aspect, was, now):
+            message = f"the {aspect} of {owner}.{new.name} was {shorten(was)}, and is {shorten(now)}"
+            return Finding("field-meaning", message, (new.span, ""), (old.span, "before"))
         case edits.ConstantAdded():
             return None
         case edits.ConstantRemoved(within, constant):

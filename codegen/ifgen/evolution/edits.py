@@ -90,6 +90,18 @@ class DefaultChanged:
 
 
 @dataclass(frozen=True, slots=True)
+class MeaningChanged:
+    """A field whose comment says another unit, range, frame or invalid value: it `was` so, and is `now`."""
+
+    within: Versions
+    old: Field
+    new: Field
+    aspect: str
+    was: str
+    now: str
+
+
+@dataclass(frozen=True, slots=True)
 class ConstantAdded:
     """A new constant."""
 
@@ -172,6 +184,7 @@ MessageEdit: TypeAlias = (
     | FieldMoved
     | FieldRetyped
     | DefaultChanged
+    | MeaningChanged
     | ConstantAdded
     | ConstantRemoved
     | ConstantRenamed

@@ -45,6 +45,8 @@ class Comparison:
                 if old.name != new.name:
                     yield edits.FieldRenamed(within, old, new)
                 yield from self._field(within, old, new)
+                if self.with_constants and _commented(old) != _commented(new):
+                    yield from _meanings(within, old, new)
         before, now = _by_name(within.old.fields), _by_name(within.new.fields)
         for name in _moved(list(before), list(now)):
             yield edits.FieldMoved(within, before[name], now[name])
@@ -154,6 +156,19 @@ def _moved(old: Sequence[str], new: Sequence[str]) -> list[str]:
             stays.add(name)
             length -= 1
     return [name for name in common if name not in stays]
+
+
+def _commented(field: Field) -> object:
+    return field.documentation, field.unit, field.annotations
+
+
+def _meanings(within: Versions, old: Field, new: Field) -> Iterator[MessageEdit]:
+    """The differences between the comments of a field: they change its meaning, not the wire."""
+    from ifgen.definition.meaning.comparison import differences  # late: few comments change
+    from ifgen.definition.meaning.reading import meaning_of
+
+    for found in differences(meaning_of(old), meaning_of(new)):
+        yield edits.MeaningChanged(within, old, new, found.aspect, found.one, found.other)
 
 
 def _by_name(fields: Sequence[Field]) -> dict[str, Field]:

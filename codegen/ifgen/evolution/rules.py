@@ -54,6 +54,8 @@ def broken_by(edit: edits.Edit) -> frozenset[edits.Category]:
             return _SOURCE if edit.new.read_only else NOTHING
         case edits.ParameterRemoved() | edits.ParameterRenamed() | edits.NodeClassChanged():
             return _SOURCE
+        case edits.MeaningChanged():  # no program fails, and no promise is about comments: it is a warning
+            return NOTHING
         case edits.ConstantAdded() | edits.InterfaceAdded() | edits.NodeAdded() | edits.EndpointAdded():
             return NOTHING
         case _:

@@ -30,9 +30,10 @@ IN_MESSAGES: Final = _homes(
         "array": "array",
         "collections.abc": "Iterable Sequence",
         "enum": "IntEnum",
-        "typing": "Any ClassVar Final TypeAlias",
+        "typing": "Annotated Any ClassVar Final TypeAlias",
         "": "numpy",
         "numpy.typing": "NDArray",
+        "ifgen_runtime": "meaning",
         "ifgen_runtime.copying": (
             "ITERABLES array_repr arrays copied_array copied_list copied_other deepcopy_of new_array "
             "new_object repr_name repr_of_fields unequal"
@@ -161,9 +162,14 @@ _FOR_TYPE_CHECKERS: Final = {
     "typing",
     "enum",
     "numpy.typing",
+    "ifgen_runtime",
     "ifgen_runtime.views",
     "",
 }
+
+
+_IN_HINTS: Final = {"Annotated", "meaning"}
+"""The names that `typing.get_type_hints` needs at run time."""
 
 
 class Scope(Names):
@@ -226,7 +232,9 @@ class Scope(Names):
     def lazy_imports(self) -> tuple[str, ...]:
         """The replacements of those of `typing_imports` that are used at run time."""
         return statements(
-            ("ifgen_runtime.lazy", name, spelling) for module, name, spelling in self._used if not module
+            ("ifgen_runtime.lazy", name, spelling)
+            for module, name, spelling in self._used
+            if not module or name in _IN_HINTS
         )
 
     @property

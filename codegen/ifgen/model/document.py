@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from typing import Any, Final, cast
 
-from ifgen.model.interfaces import Interface, Message, Model
+from ifgen.model.interfaces import Interface, Meaning, Message, Model
 from ifgen.model.wire import Step
 
-VERSION: Final = "1.0"
+VERSION: Final = "1.1"
 """The version of the model. A minor one only adds members, which readers of an older one must ignore."""
 
 SCHEMA: Final = "https://raw.githubusercontent.com/ifgen-ros/ifgen/main/docs/model-1.schema.json"
@@ -26,12 +26,15 @@ MAX_NUMBER: Final = 2**53 - 1
 _REFERENCES: Final = {(Interface, "messages"), (Interface, "types")}
 """Members that name messages, which stand in `types` of the document."""
 
-_DEFAULTS: Final[Mapping[str, object]] = {
-    field.name: [] if field.default == () else field.default
-    for field in dataclasses.fields(Step)
-    if field.default is not dataclasses.MISSING
+_DEFAULTS: Final[Mapping[type, Mapping[str, object]]] = {
+    cls: {
+        field.name: [] if field.default == () else field.default
+        for field in dataclasses.fields(cls)
+        if field.default is not dataclasses.MISSING
+    }
+    for cls in (Step, Meaning)
 }
-"""The members of a step that are left out of the document where they have these values."""
+"""The members that are left out of the document where they have these values."""
 
 
 def document(model: Model) -> dict[str, Any]:
@@ -66,9 +69,10 @@ def _object_as_json(value: object) -> dict[str, Any]:
     if not dataclasses.is_dataclass(cls):
         raise TypeError(f"{value!r} is not JSON")
     members = {name: _member(cls, name, getattr(value, name)) for name in _hints(cls)}
-    if isinstance(value, Step):  # most members are of one kind of step only
-        return {name: of for name, of in members.items() if of != _DEFAULTS.get(name, ...)}
-    return members
+    defaults = _DEFAULTS.get(cls)
+    return (
+        {name: of for name, of in members.items() if of != defaults.get(name, ...)} if defaults else members
+    )
 
 
 def _member(cls: type, name: str, value: Any) -> Any:
@@ -187,7 +191,7 @@ def _schema_of(hint: Any, definitions: dict[str, Any]) -> dict[str, Any]:
         definitions[name] |= {
             "description": " ".join(str(hint.__doc__).split()),
             "type": "object",
-            "required": list(_required(hint) if hint is Step else _hints(hint)),
+            "required": list(_required(hint) if hint in _DEFAULTS else _hints(hint)),
             "properties": {
                 member: {"type": "array", "items": {"type": "string"}}
                 if (hint, member) in _REFERENCES

@@ -155,6 +155,44 @@ class Value:
 
 
 @dataclass(frozen=True, slots=True)
+class Range:
+    """The smallest and the largest value; None where there is no bound."""
+
+    minimum: float | None
+    maximum: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Invalid:
+    """The `value` that stands for "no valid data" (the text `nan` for NaN), and `when` it does."""
+
+    value: Scalar
+    when: str
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """The meaning of an element beyond its type, as comments and annotations say it (docs/meaning.md).
+
+    `unit` has its author's spelling. `normal_unit` has one that all authors share, and is None if the unit is
+    unknown; `-` says that a number has no unit. `range` bounds each element. `enum` are the names of the
+    constants that `[@enum NAME]` names; `closed` is true if they are all the values, and false for a set of
+    flags. A `frame` that begins with `@` names a field or a constant. `invalid` is the value for "no valid
+    data". `deprecated` is the advice, empty without one. `summary` is all of it but the unit in a few words.
+    """
+
+    unit: str | None = None
+    normal_unit: str | None = None
+    range: Range | None = None
+    enum: tuple[str, ...] = ()
+    closed: bool = False
+    frame: str | None = None
+    invalid: Invalid | None = None
+    deprecated: str | None = None
+    summary: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Field:
     """A field.
 
@@ -162,7 +200,8 @@ class Field:
     sequence; None where none is declared. `default` is the spelling of either in a .msg file. `constants` are
     the names of the constants that are its values: `STATUS_OK` and `STATUS_ERROR` for `status`. `names` has a
     name for each language of `ifgen.model.names`, which differs from `name` where that is a reserved word.
-    `position` is None for the fields of derived messages. `python_default` is the value in a new Python
+    `documentation` is the comment without the tags in it, which `meanings` has. `position` is None for the
+    fields of derived messages. `python_default` is the value in a new Python
     object as a literal; None for messages.
     """
 
@@ -179,12 +218,19 @@ class Field:
     constants: tuple[str, ...]
     names: Mapping[str, str]
     position: Position | None
-    meanings: Mapping[str, Any]
+    meanings: Meaning
 
     @property
     def attribute(self) -> str:
         """The name in Python."""
         return self.names["python"]
+
+    @property
+    def comment(self) -> str:
+        """The documentation with its last lines: `Unit: m/s`, and the rest of its meaning in a few words."""
+        summary = self.meanings.summary
+        last = f"{summary[0].upper()}{summary[1:]}." if summary else ""
+        return "\n".join(filter(None, (self.documentation, f"Unit: {self.unit}" if self.unit else "", last)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +248,7 @@ class Constant:
     annotations: tuple[Annotation, ...]
     names: Mapping[str, str]
     position: Position | None
-    meanings: Mapping[str, Any]
+    meanings: Meaning
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,7 +282,7 @@ class Message:
     position: Position | None
     wire: Wire
     description: Mapping[str, Any]
-    meanings: Mapping[str, Any]
+    meanings: Meaning
 
     @property
     def role(self) -> MessageKind:
@@ -290,7 +336,7 @@ class Interface:
     names: Mapping[str, str]
     position: Position | None
     description: Mapping[str, Any]
-    meanings: Mapping[str, Any]
+    meanings: Meaning
 
     @property
     def module(self) -> str:

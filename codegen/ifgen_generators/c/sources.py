@@ -78,7 +78,7 @@ class Sources:
         if message.placeholder:
             yield "  uint8_t structure_needs_at_least_one_member;"
         for field in message.fields:
-            yield from comment(field.documentation, field.unit, indent="  ")
+            yield from comment(field.comment, indent="  ")
             yield f"  {self._declaration(field)}"
         yield f"}} {name};"
         yield ""

@@ -80,7 +80,7 @@ class Headers:
         if message.constants:
             yield ""
         for field in message.fields:
-            yield from comment(field.documentation, field.unit, indent="  ")
+            yield from comment(field.comment, indent="  ")
             yield f"  {cpp_type(field.type)} {field.names['cpp']}{_initializer(field)};"
         if message.fields:
             yield ""

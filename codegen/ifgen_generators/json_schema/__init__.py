@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from ifgen.generators import File, Generator, Option, Request, Response
@@ -84,7 +84,10 @@ def _field(field: Field, message: Message, options: Mapping[str, Any]) -> dict[s
     owned = [constant for constant in message.constants if constant.name in field.constants]
     if owned:
         found["x-ros-constants"] = {constant.name: _literal(constant, options) for constant in owned}
-    text = " ".join(filter(None, (field.documentation, f"[{field.unit}]" if field.unit else "")))
+    _restrict(found, field, owned, options)
+    unit, summary = field.unit, field.meanings.summary
+    texts = (field.documentation, f"[{unit}]" if unit else "", f"({summary})" if summary else "")
+    text = " ".join(filter(None, texts))
     if text:
         found["description"] = text
     if field.default_value is not None:
@@ -92,6 +95,28 @@ def _field(field: Field, message: Message, options: Mapping[str, Any]) -> dict[s
     if field.default_elements is not None and "contentEncoding" not in found:
         found["default"] = [_value(each, field.type, options) for each in field.default_elements]
     return found
+
+
+def _restrict(
+    schema: dict[str, Any], field: Field, owned: Sequence[Constant], options: Mapping[str, Any]
+) -> None:
+    """Add the meaning of a field: bounds and values of its elements, deprecation, unit and frame."""
+    meaning = field.meanings
+    elements = schema["items"] if schema.get("type") == "array" else schema
+    if elements.get("type") == "integer" or elements.get("type") == "number":
+        bounds = meaning.range
+        low, high = (bounds.minimum, bounds.maximum) if bounds else (None, None)
+        limits = {"minimum": low, "maximum": high}
+        elements |= {name: limit for name, limit in limits.items() if limit is not None}
+        if meaning.closed and owned:
+            elements["enum"] = list(dict.fromkeys(_literal(constant, options) for constant in owned))
+        if meaning.invalid and (bounds or "enum" in elements) and not isinstance(meaning.invalid.value, str):
+            kept = {name: elements.pop(name) for name in ("minimum", "maximum", "enum") if name in elements}
+            elements["anyOf"] = [kept, {"const": meaning.invalid.value}]
+    if meaning.deprecated is not None:
+        schema["deprecated"] = True
+    others = {"x-unit": meaning.normal_unit, "x-frame": meaning.frame}
+    schema |= {name: text for name, text in others.items() if text}
 
 
 def _literal(constant: Constant, options: Mapping[str, Any]) -> Any:

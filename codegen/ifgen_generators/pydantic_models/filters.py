@@ -44,9 +44,9 @@ def free(text: str, interface: Interface) -> str:
 
 def imports(interface: Interface, package: str, converts: bool) -> list[str]:
     """The import statements of a module of `package`, in the order that isort wants."""
-    types = [field.type for message in interface.messages for field in message.fields]
+    types = [(field.type, field) for message in interface.messages for field in message.fields]
     constants = [of.type for message in interface.messages for of in message.constants]
-    texts = [*map(annotation, types), *map(annotation_of_constant, constants)]
+    texts = [*(annotation(*typed) for typed in types), *map(annotation_of_constant, constants)]
     words = {str(word) for text in texts for word in re.findall(r"\w+", text)}
     if converts:
         words.add("classmethod")
@@ -68,9 +68,15 @@ def imports(interface: Interface, package: str, converts: bool) -> list[str]:
     return [*first, *([""] if first else []), *sorted(others)]
 
 
-def annotation(type_: FieldType) -> str:
-    """The annotation of a field, with the bounds of its type."""
+def annotation(type_: FieldType, field: Field | None = None) -> str:
+    """The annotation of a field, with the bounds of its type, or the narrower ones of its meaning."""
+    low: float | None
+    high: float | None
     low, high = (0, 255) if type_.base == "byte" else (type_.minimum, type_.maximum)
+    bounds = field.meanings.range if field and not field.meanings.invalid else None
+    if bounds and type_.base in {"int", "float"}:
+        low = low if bounds.minimum is None else bounds.minimum
+        high = high if bounds.maximum is None else bounds.maximum
     element = model(type_.message) if type_.message else _PYTHON[type_.base]
     if type_.base == "char":
         return _many("Annotated[str, Field(min_length=1, max_length=1)]", type_)
@@ -103,9 +109,10 @@ def default_value(field: Field) -> str:
 
 
 def description(field: Field) -> str:
-    """The first line about a field in the interface, and its unit, as a Python literal."""
-    text = field.documentation.partition("\n")[0]
-    return repr(f"{text} [{field.unit}]".strip() if field.unit else text)
+    """The first line about a field in the interface, and its meaning, as a Python literal."""
+    text, summary = field.documentation.partition("\n")[0], field.meanings.summary
+    texts = (text, f"[{field.unit}]" if field.unit else "", f"({summary})" if summary else "")
+    return repr(" ".join(filter(None, texts)))
 
 
 def docstring_text(text: str) -> str:
@@ -137,10 +144,10 @@ def _each(value: str, type_: FieldType, element: str) -> str:
     return value if element == "{}" else f"[{element.format('e')} for e in {value}]"
 
 
-def _bounded(annotation: str, **bounds: int | None) -> str:
+def _bounded(annotation: str, **bounds: float | None) -> str:
     given = ", ".join(f"{name}={value}" for name, value in _given(bounds).items())
     return f"Annotated[{annotation}, Field({given})]" if given else annotation
 
 
-def _given(bounds: dict[str, int | None]) -> dict[str, int]:
+def _given(bounds: dict[str, float | None]) -> dict[str, float]:
     return {name: value for name, value in bounds.items() if value is not None}

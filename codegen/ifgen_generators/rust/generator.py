@@ -173,8 +173,7 @@ class _Module:
 
     def _fields(self, message: Message, codec: Codec, borrowed: bool) -> Iterator[str]:
         for field in message.fields:
-            unit = f"Unit: {field.unit}" if field.unit else ""
-            yield from _comment("\n".join(filter(None, (field.documentation, unit))), "    ")
+            yield from _comment(field.comment, "    ")
             yield f"    pub {key(field.name)}: {self._type(field.type, codec, borrowed)},"
 
     def _type(self, kind: FieldType, codec: Codec, borrowed: bool) -> str:

@@ -164,8 +164,7 @@ class _Module:
         yield from _comment(message.documentation)
         yield f"export interface {name} {{"
         for field in message.fields:
-            unit = f"Unit: {field.unit}" if field.unit else ""
-            yield from _comment("\n".join(filter(None, (field.documentation, unit))), "  ")
+            yield from _comment(field.comment, "  ")
             yield f"  {key(field.name)}: {self._type(field, message)};"
         yield "}\n"
         value = WriteFunction(self._style, self._functions).lines(message.wire.steps)

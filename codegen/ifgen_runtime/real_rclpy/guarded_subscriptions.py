@@ -1,4 +1,4 @@
-"""A subscription that knows whose definition a message has before it delivers it.
+"""Handles of topics that look at each message: whose definition it has, and whether its values are in range.
 
 Since Kilted rclpy tells each message's publisher. On Jazzy it does not. There, all who may have sent a
 message must have one definition.
@@ -14,11 +14,12 @@ from typing import Any, Final
 from rclpy import subscription as subscriptions
 
 from ifgen_runtime.adapters import short
+from ifgen_runtime.checks.ranges import look_at
 from ifgen_runtime.mismatch.limits import SeenSet
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
 from ifgen_runtime.real_rclpy.carriers import decoded
 from ifgen_runtime.real_rclpy.endpoints import Part, parts_of
-from ifgen_runtime.real_rclpy.handles import Subscription
+from ifgen_runtime.real_rclpy.handles import Publisher, Subscription
 from ifgen_runtime.real_rclpy.peers import Others, Peer, applied, differs
 
 _GID: Final = "publisher_gid"
@@ -124,6 +125,8 @@ class GuardedSubscription(Subscription):
     """rclpy's handle, with a guard."""
 
     guard: SubscriptionGuard
+    look: Callable[[Any], None] | None = None
+    """Looks at the ranges of a message."""
 
     def take_message(self, message_type: type[Any], raw: bool) -> tuple[Any, Mapping[str, Any]] | None:
         """The next message and what is known of it, as rclpy takes it; None if there is none to deliver."""
@@ -132,7 +135,51 @@ class GuardedSubscription(Subscription):
             return None
         data, info = taken
         message = self.guard.message(data, info, raw)
-        return None if message is None else (message, info)
+        if message is None:
+            return None
+        if self.look is not None and not raw:
+            self.look(message)
+        return message, info
+
+
+class LookingSubscription(Subscription):
+    """rclpy's handle, with a look at the ranges of each message."""
+
+    look: Callable[[Any], None]
+
+    def take_message(self, message_type: type[Any], raw: bool) -> tuple[Any, Mapping[str, Any]] | None:
+        """The next message and what is known of it, as rclpy takes it."""
+        taken = super().take_message(message_type, raw)
+        if taken is not None and not raw:
+            self.look(taken[0])
+        return taken
+
+
+class LookingPublisher(Publisher):
+    """rclpy's handle, with a look at the ranges of each message."""
+
+    look: Callable[[Any], None]
+
+    def publish(self, message: Any) -> None:
+        """Look at a message, and publish it."""
+        self.look(message)
+        super().publish(message)
+
+
+def looking(plain: Any, node: Any, cls: type[Any], topic: str, qos: Any) -> Any:
+    """A handle that looks at the ranges of messages, in the place of a plain one; that one without ranges."""
+    verb = "published" if isinstance(plain, Publisher) else "received"
+    look = look_at(cls, plain.get_topic_name(), verb, node.get_logger().warning)
+    if look is None or isinstance(plain, GuardedSubscription):
+        if isinstance(plain, GuardedSubscription):
+            plain.look = look
+        return plain
+    kind = LookingPublisher if isinstance(plain, Publisher) else LookingSubscription
+    with node.handle:
+        handle = kind(node.handle, cls, topic, qos.get_c_qos_profile())
+    handle.look = look
+    plain.destroy_when_not_in_use()
+    return handle
 
 
 def guarded_subscription(

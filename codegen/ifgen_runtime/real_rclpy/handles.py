@@ -11,6 +11,19 @@ if TYPE_CHECKING:
         def __init__(self, node: Any, cls: type[Any], name: str, qos: Any) -> None:
             """Make it in rcl."""
 
+        def destroy_when_not_in_use(self) -> None:
+            """Destroy it in rcl, at the end of a call that uses it."""
+
+    class Publisher(_Handle):
+        """An `rcl_publisher_t`."""
+
+        def get_topic_name(self) -> str:
+            """The full name."""
+            ...
+
+        def publish(self, message: Any) -> None:
+            """Publish a message."""
+
     class Subscription(_Handle):
         """An `rcl_subscription_t`."""
 
@@ -60,6 +73,7 @@ if TYPE_CHECKING:
 else:
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
+    Publisher = rclpy_implementation.Publisher
     Subscription = rclpy_implementation.Subscription
     Service = rclpy_implementation.Service
     Client = rclpy_implementation.Client

@@ -83,6 +83,11 @@ def _wrap(entities: Any, role: str, type_at: int) -> None:
         policy, guard = node_policy(node), None
         if policy is not OnTypeMismatch.WARN and role != "publisher":
             arguments, guard = _guarded(node, role, cls, policy, arguments, named)
+        if os.environ.get("IFGEN_CHECK_FIELDS") and role in {"publisher", "subscription"}:
+            from ifgen_runtime.real_rclpy.guarded_subscriptions import looking  # late: few programs check
+
+            qos = arguments[3 if role == "publisher" else 5]
+            arguments = (looking(arguments[0], node, cls, arguments[2], qos), *arguments[1:])
         construct(self, *arguments, **named)
         name = self.topic_name if role in {"publisher", "subscription"} else self.service_name
         _note(node, self, role, str(name), cls, policy, guard)

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from typing import Literal, NamedTuple, TypeAlias
 
 from ifgen.definition.interfaces import Action, Constant, Field, Interface, Message, Registry, Service
+from ifgen.definition.meaning.reading import reading_of
+from ifgen.definition.meaning.values import bracketed
 from ifgen.definition.spelling import spelled, spelled_value
 from ifgen.definition.type_description import Described
 from ifgen.definition.types import Array, BoundedSequence, NamespacedType, UnboundedSequence
@@ -106,8 +108,8 @@ def _written(described: Described, registry: Registry) -> Iterator[Line]:
 
 
 def _with_comment(line: Line, described: Field | Constant) -> Iterator[Line]:
-    unit = f" [{described.unit}]" if described.unit else ""
-    comment = (described.documentation + unit).strip()
+    found = reading_of(described)
+    comment = f"{found.text} {bracketed(found.meaning)}".strip()
     if "\n" in comment:
         yield from _comment(comment)
         yield line

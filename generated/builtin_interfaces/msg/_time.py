@@ -10,7 +10,11 @@ from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_d
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -39,13 +43,13 @@ class Time(Message, metaclass=Metaclass_Time):
     # fmt: off
     # One line for each field, however long it gets.
 
-    sec: int
+    sec: Annotated[int, meaning.Unit("s")]
     """whole seconds, rounded towards minus infinity, so negative before the zero of the clock
 
     `int32`, unit s.
     """
 
-    nanosec: int
+    nanosec: Annotated[int, meaning.Unit("ns")]
     """the rest, always counted forward, 0 to 999999999
 
     `uint32`, unit ns.

@@ -20,7 +20,11 @@ from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -45,10 +49,10 @@ class Accel(Message, metaclass=Metaclass_Accel):
     # fmt: off
     # One line for each field, however long it gets.
 
-    linear: geometry_msgs_msg_Vector3
+    linear: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("m/s^2")]
     """`geometry_msgs/Vector3`, unit m/s^2."""
 
-    angular: geometry_msgs_msg_Vector3
+    angular: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("rad/s^2")]
     """about the axes of the frame, by the right-hand rule
 
     `geometry_msgs/Vector3`, unit rad/s^2.

@@ -20,7 +20,11 @@ from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -60,34 +64,34 @@ class Inertia(Message, metaclass=Metaclass_Inertia):
     # fmt: off
     # One line for each field, however long it gets.
 
-    m: float
+    m: Annotated[float, meaning.Unit("kg")]
     """mass
 
     `float64`, unit kg.
     """
 
-    com: geometry_msgs_msg_Vector3
+    com: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("m")]
     """centre of mass, seen from the origin of the frame
 
     `geometry_msgs/Vector3`, unit m.
     """
 
-    ixx: float
+    ixx: Annotated[float, meaning.Unit("kg*m^2")]
     """`float64`, unit kg*m^2."""
 
-    ixy: float
+    ixy: Annotated[float, meaning.Unit("kg*m^2")]
     """`float64`, unit kg*m^2."""
 
-    ixz: float
+    ixz: Annotated[float, meaning.Unit("kg*m^2")]
     """`float64`, unit kg*m^2."""
 
-    iyy: float
+    iyy: Annotated[float, meaning.Unit("kg*m^2")]
     """`float64`, unit kg*m^2."""
 
-    iyz: float
+    iyz: Annotated[float, meaning.Unit("kg*m^2")]
     """`float64`, unit kg*m^2."""
 
-    izz: float
+    izz: Annotated[float, meaning.Unit("kg*m^2")]
     """`float64`, unit kg*m^2."""
 
     def __init__(

@@ -10,7 +10,11 @@ from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_d
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -37,13 +41,13 @@ class Point(Message, metaclass=Metaclass_Point):
     # fmt: off
     # One line for each field, however long it gets.
 
-    x: float
+    x: Annotated[float, meaning.Unit("m")]
     """`float64`, unit m."""
 
-    y: float
+    y: Annotated[float, meaning.Unit("m")]
     """`float64`, unit m."""
 
-    z: float
+    z: Annotated[float, meaning.Unit("m")]
     """`float64`, unit m."""
 
     def __init__(

@@ -21,7 +21,11 @@ from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -46,7 +50,7 @@ class Transform(Message, metaclass=Metaclass_Transform):
     # fmt: off
     # One line for each field, however long it gets.
 
-    translation: geometry_msgs_msg_Vector3
+    translation: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("m")]
     """`geometry_msgs/Vector3`, unit m."""
 
     rotation: geometry_msgs_msg_Quaternion

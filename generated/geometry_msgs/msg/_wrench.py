@@ -20,7 +20,11 @@ from geometry_msgs.msg import Vector3 as geometry_msgs_msg_Vector3
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -45,10 +49,10 @@ class Wrench(Message, metaclass=Metaclass_Wrench):
     # fmt: off
     # One line for each field, however long it gets.
 
-    force: geometry_msgs_msg_Vector3
+    force: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("N")]
     """`geometry_msgs/Vector3`, unit N."""
 
-    torque: geometry_msgs_msg_Vector3
+    torque: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("N*m")]
     """`geometry_msgs/Vector3`, unit N*m."""
 
     def __init__(

@@ -27,7 +27,11 @@ from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, TypeAlias
+    from typing import Annotated, Any, ClassVar, Final, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -60,7 +64,7 @@ class PerformDance_Goal(Message, metaclass=Metaclass_PerformDance_Goal):
     `string<=64`.
     """
 
-    tempo: float
+    tempo: Annotated[float, meaning.Unit("1/min")]
     """beats per minute; 0: the dance's own
 
     `float32`, unit 1/min.
@@ -183,7 +187,7 @@ class PerformDance_Result(Message, metaclass=Metaclass_PerformDance_Result):
     `builtin_interfaces/Duration`.
     """
 
-    joint_error: float
+    joint_error: Annotated[float, meaning.Unit("rad")]
     """greatest joint_error of the whole dance
 
     `float32`, unit rad.
@@ -328,7 +332,7 @@ class PerformDance_Feedback(Message, metaclass=Metaclass_PerformDance_Feedback):
     `float32`.
     """
 
-    joint_error: float
+    joint_error: Annotated[float, meaning.Unit("rad")]
     """root mean square, over waist, head and arms, of commanded less measured position
 
     `float32`, unit rad.

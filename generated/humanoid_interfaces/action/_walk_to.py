@@ -28,7 +28,11 @@ from unique_identifier_msgs.msg import UUID as unique_identifier_msgs_msg_UUID
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, TypeAlias
+    from typing import Annotated, Any, ClassVar, Final, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -65,19 +69,19 @@ class WalkTo_Goal(Message, metaclass=Metaclass_WalkTo_Goal):
     `geometry_msgs/PoseStamped`.
     """
 
-    position_tolerance: float
+    position_tolerance: Annotated[float, meaning.Unit("m")]
     """distance that counts as arrived; 0: the server's own
 
     `float64`, unit m.
     """
 
-    yaw_tolerance: float
+    yaw_tolerance: Annotated[float, meaning.Unit("rad")]
     """angle that counts as arrived; 0: the server's own
 
     `float64`, unit rad.
     """
 
-    max_step_length: float
+    max_step_length: Annotated[float, meaning.Unit("m")]
     """longest step forward; 0: the planner's own
 
     `float64`, unit m.
@@ -341,7 +345,7 @@ class WalkTo_Feedback(Message, metaclass=Metaclass_WalkTo_Feedback):
     `geometry_msgs/PoseStamped`.
     """
 
-    distance_left: float
+    distance_left: Annotated[float, meaning.Unit("m")]
     """straight line on the ground from here to the target
 
     `float64`, unit m.

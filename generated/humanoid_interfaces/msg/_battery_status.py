@@ -22,7 +22,11 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final
+    from typing import Annotated, Any, ClassVar, Final
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -112,19 +116,19 @@ class BatteryStatus(Message, metaclass=Metaclass_BatteryStatus):
     `float32`.
     """
 
-    voltage: float
+    voltage: Annotated[float, meaning.Unit("V")]
     """of the whole pack
 
     `float32`, unit V.
     """
 
-    current: float
+    current: Annotated[float, meaning.Unit("A")]
     """positive while charging, negative while discharging
 
     `float32`, unit A.
     """
 
-    temperature: float
+    temperature: Annotated[float, meaning.Unit("degC")]
     """of the warmest cell
 
     `float32`, unit degC.

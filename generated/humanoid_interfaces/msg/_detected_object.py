@@ -21,7 +21,11 @@ from sensor_msgs.msg import RegionOfInterest as sensor_msgs_msg_RegionOfInterest
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -84,7 +88,7 @@ class DetectedObject(Message, metaclass=Metaclass_DetectedObject):
     `geometry_msgs/Pose`.
     """
 
-    size: geometry_msgs_msg_Vector3
+    size: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("m")]
     """extent along the axes of its own frame, 0 where unknown
 
     `geometry_msgs/Vector3`, unit m.

@@ -19,7 +19,11 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -52,7 +56,7 @@ class ObstacleMotion(Message, metaclass=Metaclass_ObstacleMotion):
     `string<=64`.
     """
 
-    position: geometry_msgs_msg_Point
+    position: Annotated[geometry_msgs_msg_Point, meaning.Unit("m")]
     """of its middle on the floor, in odom; z is ignored
 
     `geometry_msgs/Point`, unit m.

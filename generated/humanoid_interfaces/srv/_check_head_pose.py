@@ -24,7 +24,11 @@ from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventIn
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, TypeAlias
+    from typing import Annotated, Any, ClassVar, Final, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -86,13 +90,13 @@ class CheckHeadPose_Request(Message, metaclass=Metaclass_CheckHeadPose_Request):
     `geometry_msgs/PoseStamped`.
     """
 
-    position_tolerance: float
+    position_tolerance: Annotated[float, meaning.Unit("m")]
     """0: the server's own; MODE_LOOK_AT ignores it
 
     `float64`, unit m.
     """
 
-    orientation_tolerance: float
+    orientation_tolerance: Annotated[float, meaning.Unit("rad")]
     """0: the server's own
 
     `float64`, unit rad.
@@ -199,13 +203,13 @@ class CheckHeadPose_Response(Message, metaclass=Metaclass_CheckHeadPose_Response
     `sensor_msgs/JointState`.
     """
 
-    position_residual: float
+    position_residual: Annotated[float, meaning.Unit("m")]
     """distance left at that pose
 
     `float64`, unit m.
     """
 
-    orientation_residual: float
+    orientation_residual: Annotated[float, meaning.Unit("rad")]
     """angle left at that pose; with MODE_LOOK_AT between gaze and target
 
     `float64`, unit rad.

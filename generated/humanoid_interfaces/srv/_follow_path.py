@@ -24,7 +24,11 @@ from humanoid_interfaces.msg import Stance as humanoid_interfaces_msg_Stance
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, TypeAlias
+    from typing import Annotated, Any, ClassVar, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -79,7 +83,7 @@ class FollowPath_Request(Message, metaclass=Metaclass_FollowPath_Request):
     `uint32`.
     """
 
-    max_step_length: float
+    max_step_length: Annotated[float, meaning.Unit("m")]
     """longest step forward; 0: the planner's own
 
     `float64`, unit m.

@@ -27,7 +27,11 @@ from humanoid_interfaces.msg import Stance as humanoid_interfaces_msg_Stance
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, TypeAlias
+    from typing import Annotated, Any, ClassVar, Final, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -78,7 +82,7 @@ class PlanFootsteps_Request(Message, metaclass=Metaclass_PlanFootsteps_Request):
     `uint8`.
     """
 
-    max_step_length: float
+    max_step_length: Annotated[float, meaning.Unit("m")]
     """longest step forward; 0: the planner's own; never above the planner's own
 
     `float64`, unit m.

@@ -25,7 +25,11 @@ from service_msgs.msg import ServiceEventInfo as service_msgs_msg_ServiceEventIn
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, TypeAlias
+    from typing import Annotated, Any, ClassVar, Final, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -92,13 +96,13 @@ class SolveIK_Request(Message, metaclass=Metaclass_SolveIK_Request):
     `bool`.
     """
 
-    position_tolerance: float
+    position_tolerance: Annotated[float, meaning.Unit("m")]
     """largest distance that counts as solved; 0: the server's own
 
     `float64`, unit m.
     """
 
-    orientation_tolerance: float
+    orientation_tolerance: Annotated[float, meaning.Unit("rad")]
     """largest angle that counts as solved; 0: the server's own
 
     `float64`, unit rad.
@@ -316,13 +320,13 @@ class SolveIK_Response(Message, metaclass=Metaclass_SolveIK_Response):
     `sensor_msgs/JointState`.
     """
 
-    position_residual: float
+    position_residual: Annotated[float, meaning.Unit("m")]
     """distance left between tip and target at the solution
 
     `float64`, unit m.
     """
 
-    orientation_residual: float
+    orientation_residual: Annotated[float, meaning.Unit("rad")]
     """angle left between tip and target at the solution
 
     `float64`, unit rad.

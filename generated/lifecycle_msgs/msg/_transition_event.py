@@ -21,7 +21,11 @@ from lifecycle_msgs.msg import Transition as lifecycle_msgs_msg_Transition
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -50,7 +54,7 @@ class TransitionEvent(Message, metaclass=Metaclass_TransitionEvent):
     # fmt: off
     # One line for each field, however long it gets.
 
-    timestamp: int
+    timestamp: Annotated[int, meaning.Unit("ns")]
     """when it happened
 
     `uint64`, unit ns.

@@ -20,7 +20,11 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -52,13 +56,13 @@ class GridCells(Message, metaclass=Metaclass_GridCells):
     header: std_msgs_msg_Header
     """`std_msgs/Header`."""
 
-    cell_width: float
+    cell_width: Annotated[float, meaning.Unit("m")]
     """extent along x
 
     `float32`, unit m.
     """
 
-    cell_height: float
+    cell_height: Annotated[float, meaning.Unit("m")]
     """extent along y
 
     `float32`, unit m.

@@ -20,7 +20,11 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -57,7 +61,7 @@ class MapMetaData(Message, metaclass=Metaclass_MapMetaData):
     `builtin_interfaces/Time`.
     """
 
-    resolution: float
+    resolution: Annotated[float, meaning.Unit("m")]
     """edge length of a square cell
 
     `float32`, unit m.

@@ -23,7 +23,11 @@ from nav_msgs.msg import Path as nav_msgs_msg_Path
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, TypeAlias
+    from typing import Annotated, Any, ClassVar, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -56,7 +60,7 @@ class GetPlan_Request(Message, metaclass=Metaclass_GetPlan_Request):
     goal: geometry_msgs_msg_PoseStamped
     """`geometry_msgs/PoseStamped`."""
 
-    tolerance: float
+    tolerance: Annotated[float, meaning.Unit("m")]
     """how far from an unreachable goal the path may end; 0: not at all
 
     `float32`, unit m.

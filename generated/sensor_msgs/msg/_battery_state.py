@@ -35,9 +35,12 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
     from enum import IntEnum
-    from typing import Any, ClassVar, Final, TypeAlias
+    from typing import Annotated, Any, ClassVar, Final, TypeAlias
 
+    from ifgen_runtime import meaning
     from ifgen_runtime.views import Float32Array
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -224,31 +227,31 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
     header: std_msgs_msg_Header
     """`std_msgs/Header`."""
 
-    voltage: float
+    voltage: Annotated[float, meaning.Unit("V")]
     """`float32`, unit V."""
 
-    temperature: float
+    temperature: Annotated[float, meaning.Unit("degC")]
     """`float32`, unit degC."""
 
-    current: float
+    current: Annotated[float, meaning.Unit("A")]
     """positive while charging, negative while discharging
 
     `float32`, unit A.
     """
 
-    charge: float
+    charge: Annotated[float, meaning.Unit("Ah")]
     """present charge
 
     `float32`, unit Ah.
     """
 
-    capacity: float
+    capacity: Annotated[float, meaning.Unit("Ah")]
     """charge when full, at its present age
 
     `float32`, unit Ah.
     """
 
-    design_capacity: float
+    design_capacity: Annotated[float, meaning.Unit("Ah")]
     """charge when full, as new
 
     `float32`, unit Ah.
@@ -340,7 +343,7 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
             raise
 
     @property
-    def cell_voltage(self) -> array[float]:
+    def cell_voltage(self) -> Annotated[array[float], meaning.Unit("V")]:
         """of each cell; empty if cells cannot be told apart
 
         `float32[]`, unit V.
@@ -356,7 +359,7 @@ class BatteryState(Message, metaclass=Metaclass_BatteryState):
             raise
 
     @property
-    def cell_temperature(self) -> array[float]:
+    def cell_temperature(self) -> Annotated[array[float], meaning.Unit("degC")]:
         """of each cell; empty if cells cannot be told apart
 
         `float32[]`, unit degC.

@@ -35,13 +35,14 @@ from sensor_msgs.msg import RegionOfInterest as sensor_msgs_msg_RegionOfInterest
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, TypeAlias
+    from typing import Annotated, Any, ClassVar, TypeAlias
 
     import numpy
+    from ifgen_runtime import meaning
     from ifgen_runtime.views import Float64Array
     from numpy.typing import NDArray
 else:
-    from ifgen_runtime.lazy import numpy
+    from ifgen_runtime.lazy import Annotated, meaning, numpy
 
 _check_fields = checks_by_default()
 
@@ -95,16 +96,16 @@ class CameraInfo(Message, metaclass=Metaclass_CameraInfo):
     `std_msgs/Header`.
     """
 
-    height: int
+    height: Annotated[int, meaning.Unit("pixels")]
     """rows of the full resolution, in pixels
 
-    `uint32`.
+    `uint32`, unit pixels.
     """
 
-    width: int
+    width: Annotated[int, meaning.Unit("pixels")]
     """columns of the full resolution, in pixels
 
-    `uint32`.
+    `uint32`, unit pixels.
     """
 
     distortion_model: str

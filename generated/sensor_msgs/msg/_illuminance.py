@@ -19,7 +19,11 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -54,10 +58,10 @@ class Illuminance(Message, metaclass=Metaclass_Illuminance):
     `std_msgs/Header`.
     """
 
-    illuminance: float
+    illuminance: Annotated[float, meaning.Unit("lx")]
     """`float64`, unit lx."""
 
-    variance: float
+    variance: Annotated[float, meaning.Unit("lx^2")]
     """0: not known
 
     `float64`, unit lx^2.

@@ -34,9 +34,12 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, TypeAlias
+    from typing import Annotated, Any, ClassVar, TypeAlias
 
+    from ifgen_runtime import meaning
     from ifgen_runtime.views import UInt8Array
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -77,16 +80,16 @@ class Image(Message, metaclass=Metaclass_Image):
     `std_msgs/Header`.
     """
 
-    height: int
+    height: Annotated[int, meaning.Unit("pixels")]
     """rows, in pixels
 
-    `uint32`.
+    `uint32`, unit pixels.
     """
 
-    width: int
+    width: Annotated[int, meaning.Unit("pixels")]
     """columns, in pixels
 
-    `uint32`.
+    `uint32`, unit pixels.
     """
 
     encoding: str
@@ -102,10 +105,10 @@ class Image(Message, metaclass=Metaclass_Image):
     `uint8`.
     """
 
-    step: int
+    step: Annotated[int, meaning.Unit("bytes")]
     """length of a row, padding included, in bytes
 
-    `uint32`.
+    `uint32`, unit bytes.
     """
 
     def __init__(

@@ -32,12 +32,13 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
 
     import numpy
+    from ifgen_runtime import meaning
     from numpy.typing import NDArray
 else:
-    from ifgen_runtime.lazy import numpy
+    from ifgen_runtime.lazy import Annotated, meaning, numpy
 
 _check_fields = checks_by_default()
 
@@ -87,10 +88,10 @@ class Imu(Message, metaclass=Metaclass_Imu):
     `geometry_msgs/Quaternion`.
     """
 
-    angular_velocity: geometry_msgs_msg_Vector3
+    angular_velocity: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("rad/s")]
     """`geometry_msgs/Vector3`, unit rad/s."""
 
-    linear_acceleration: geometry_msgs_msg_Vector3
+    linear_acceleration: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("m/s^2")]
     """gravity included: a unit at rest reads 9.81 upwards
 
     `geometry_msgs/Vector3`, unit m/s^2.
@@ -125,7 +126,7 @@ class Imu(Message, metaclass=Metaclass_Imu):
             raise
 
     @property
-    def orientation_covariance(self) -> NDArray[numpy.float64]:
+    def orientation_covariance(self) -> Annotated[NDArray[numpy.float64], meaning.Unit("rad^2")]:
         """over rotations about the fixed x, y and z axis
 
         `float64[9]`, unit rad^2.
@@ -141,7 +142,7 @@ class Imu(Message, metaclass=Metaclass_Imu):
             raise
 
     @property
-    def angular_velocity_covariance(self) -> NDArray[numpy.float64]:
+    def angular_velocity_covariance(self) -> Annotated[NDArray[numpy.float64], meaning.Unit("rad^2/s^2")]:
         """`float64[9]`, unit rad^2/s^2."""
         return self._angular_velocity_covariance
 
@@ -154,7 +155,7 @@ class Imu(Message, metaclass=Metaclass_Imu):
             raise
 
     @property
-    def linear_acceleration_covariance(self) -> NDArray[numpy.float64]:
+    def linear_acceleration_covariance(self) -> Annotated[NDArray[numpy.float64], meaning.Unit("m^2/s^4")]:
         """`float64[9]`, unit m^2/s^4."""
         return self._linear_acceleration_covariance
 

@@ -33,9 +33,12 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, TypeAlias
+    from typing import Annotated, Any, ClassVar, TypeAlias
 
+    from ifgen_runtime import meaning
     from ifgen_runtime.views import Float32Array
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -86,43 +89,43 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
     `std_msgs/Header`.
     """
 
-    angle_min: float
+    angle_min: Annotated[float, meaning.Unit("rad")]
     """of the first ray
 
     `float32`, unit rad.
     """
 
-    angle_max: float
+    angle_max: Annotated[float, meaning.Unit("rad")]
     """of the last ray
 
     `float32`, unit rad.
     """
 
-    angle_increment: float
+    angle_increment: Annotated[float, meaning.Unit("rad")]
     """from ray to ray; negative for clockwise scanners
 
     `float32`, unit rad.
     """
 
-    time_increment: float
+    time_increment: Annotated[float, meaning.Unit("s")]
     """from ray to ray; 0: all at once
 
     `float32`, unit s.
     """
 
-    scan_time: float
+    scan_time: Annotated[float, meaning.Unit("s")]
     """from sweep to sweep
 
     `float32`, unit s.
     """
 
-    range_min: float
+    range_min: Annotated[float, meaning.Unit("m")]
     """anything nearer does not count
 
     `float32`, unit m.
     """
 
-    range_max: float
+    range_max: Annotated[float, meaning.Unit("m")]
     """anything farther does not count
 
     `float32`, unit m.
@@ -163,7 +166,7 @@ class LaserScan(Message, metaclass=Metaclass_LaserScan):
             raise
 
     @property
-    def ranges(self) -> array[float]:
+    def ranges(self) -> Annotated[array[float], meaning.Unit("m")]:
         """one for each ray; infinite where nothing came back (REP-117)
 
         `float32[]`, unit m.

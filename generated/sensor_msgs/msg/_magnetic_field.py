@@ -31,12 +31,13 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
 
     import numpy
+    from ifgen_runtime import meaning
     from numpy.typing import NDArray
 else:
-    from ifgen_runtime.lazy import numpy
+    from ifgen_runtime.lazy import Annotated, meaning, numpy
 
 _check_fields = checks_by_default()
 
@@ -71,7 +72,7 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
     `std_msgs/Header`.
     """
 
-    magnetic_field: geometry_msgs_msg_Vector3
+    magnetic_field: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("T")]
     """NaN for an axis that is not measured
 
     `geometry_msgs/Vector3`, unit T.
@@ -98,7 +99,7 @@ class MagneticField(Message, metaclass=Metaclass_MagneticField):
             raise
 
     @property
-    def magnetic_field_covariance(self) -> NDArray[numpy.float64]:
+    def magnetic_field_covariance(self) -> Annotated[NDArray[numpy.float64], meaning.Unit("T^2")]:
         """row after row over x, y, z; all zeros: not known
 
         `float64[9]`, unit T^2.

@@ -32,12 +32,13 @@ from sensor_msgs.msg import NavSatStatus as sensor_msgs_msg_NavSatStatus
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final
+    from typing import Annotated, Any, ClassVar, Final
 
     import numpy
+    from ifgen_runtime import meaning
     from numpy.typing import NDArray
 else:
-    from ifgen_runtime.lazy import numpy
+    from ifgen_runtime.lazy import Annotated, meaning, numpy
 
 _check_fields = checks_by_default()
 
@@ -95,19 +96,19 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
     `sensor_msgs/NavSatStatus`.
     """
 
-    latitude: float
+    latitude: Annotated[float, meaning.Unit("deg")]
     """north of the equator is positive
 
     `float64`, unit deg.
     """
 
-    longitude: float
+    longitude: Annotated[float, meaning.Unit("deg")]
     """east of Greenwich is positive
 
     `float64`, unit deg.
     """
 
-    altitude: float
+    altitude: Annotated[float, meaning.Unit("m")]
     """above the ellipsoid; NaN: not known
 
     `float64`, unit m.
@@ -148,7 +149,7 @@ class NavSatFix(Message, metaclass=Metaclass_NavSatFix):
             raise
 
     @property
-    def position_covariance(self) -> NDArray[numpy.float64]:
+    def position_covariance(self) -> Annotated[NDArray[numpy.float64], meaning.Unit("m^2")]:
         """Row after row over east, north and up at the position itself, a plane that touches the ellipsoid
         there
 

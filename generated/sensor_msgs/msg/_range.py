@@ -28,9 +28,15 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
+    from typing import Annotated as Annotated_
     from typing import Any as Any_
     from typing import ClassVar as ClassVar_
     from typing import Final as Final_
+
+    from ifgen_runtime import meaning as meaning_
+else:
+    from ifgen_runtime.lazy import Annotated as Annotated_
+    from ifgen_runtime.lazy import meaning as meaning_
 
 _check_fields = checks_by_default_()
 
@@ -83,31 +89,31 @@ class Range(Message_, metaclass=Metaclass_Range):
     `uint8`.
     """
 
-    field_of_view: float_
+    field_of_view: Annotated_[float_, meaning_.Unit("rad")]
     """opening angle of the cone that the object may be in
 
     `float32`, unit rad.
     """
 
-    min_range: float_
+    min_range: Annotated_[float_, meaning_.Unit("m")]
     """anything nearer does not count
 
     `float32`, unit m.
     """
 
-    max_range: float_
+    max_range: Annotated_[float_, meaning_.Unit("m")]
     """anything farther does not count; equal to min_range: the sensor only says yes or no
 
     `float32`, unit m.
     """
 
-    range: float_
+    range: Annotated_[float_, meaning_.Unit("m")]
     """REP-117: +inf nothing in reach, -inf nearer than min_range, NaN no measurement
 
     `float32`, unit m.
     """
 
-    variance: float_
+    variance: Annotated_[float_, meaning_.Unit("m^2")]
     """0: not known
 
     `float32`, unit m^2.

@@ -10,7 +10,11 @@ from ifgen_runtime.message import Message, MessageMeta, NoSuchField, checks_by_d
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -41,28 +45,28 @@ class RegionOfInterest(Message, metaclass=Metaclass_RegionOfInterest):
     # fmt: off
     # One line for each field, however long it gets.
 
-    x_offset: int
+    x_offset: Annotated[int, meaning.Unit("pixels")]
     """leftmost column, in pixels; 0 is the left edge
 
-    `uint32`.
+    `uint32`, unit pixels.
     """
 
-    y_offset: int
+    y_offset: Annotated[int, meaning.Unit("pixels")]
     """topmost row, in pixels; 0 is the upper edge
 
-    `uint32`.
+    `uint32`, unit pixels.
     """
 
-    height: int
+    height: Annotated[int, meaning.Unit("pixels")]
     """in pixels
 
-    `uint32`.
+    `uint32`, unit pixels.
     """
 
-    width: int
+    width: Annotated[int, meaning.Unit("pixels")]
     """in pixels
 
-    `uint32`.
+    `uint32`, unit pixels.
     """
 
     do_rectify: bool

@@ -19,7 +19,11 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar
+    from typing import Annotated, Any, ClassVar
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -52,10 +56,10 @@ class Temperature(Message, metaclass=Metaclass_Temperature):
     `std_msgs/Header`.
     """
 
-    temperature: float
+    temperature: Annotated[float, meaning.Unit("degC")]
     """`float64`, unit degC."""
 
-    variance: float
+    variance: Annotated[float, meaning.Unit("degC^2")]
     """0: not known
 
     `float64`, unit degC^2.

@@ -33,9 +33,12 @@ from ifgen_runtime.message import (
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, TypeAlias
+    from typing import Annotated, Any, ClassVar, Final, TypeAlias
 
+    from ifgen_runtime import meaning
     from ifgen_runtime.views import Float64Array
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -138,7 +141,7 @@ class SolidPrimitive(Message, metaclass=Metaclass_SolidPrimitive):
             raise
 
     @property
-    def dimensions(self) -> array[float]:
+    def dimensions(self) -> Annotated[array[float], meaning.Unit("m")]:
         """lengths, at the indices of the constants below; all greater than 0
 
         `float64[<=3]`, unit m.

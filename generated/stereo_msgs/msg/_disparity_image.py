@@ -21,7 +21,11 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, TypeAlias
+    from typing import Annotated, Any, ClassVar, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -73,13 +77,13 @@ class DisparityImage(Message, metaclass=Metaclass_DisparityImage):
     `sensor_msgs/Image`.
     """
 
-    f: float
+    f: Annotated[float, meaning.Unit("pixels")]
     """focal length, in pixels
 
-    `float32`.
+    `float32`, unit pixels.
     """
 
-    t: float
+    t: Annotated[float, meaning.Unit("m")]
     """distance between the two cameras
 
     `float32`, unit m.
@@ -91,23 +95,23 @@ class DisparityImage(Message, metaclass=Metaclass_DisparityImage):
     `sensor_msgs/RegionOfInterest`.
     """
 
-    min_disparity: float
+    min_disparity: Annotated[float, meaning.Unit("pixels")]
     """lowest disparity that was searched for, in pixels; its depth is the farthest
 
-    `float32`.
+    `float32`, unit pixels.
     """
 
-    max_disparity: float
+    max_disparity: Annotated[float, meaning.Unit("pixels")]
     """highest disparity that was searched for, in pixels; its depth is the nearest
 
-    `float32`.
+    `float32`, unit pixels.
     """
 
-    delta_d: float
+    delta_d: Annotated[float, meaning.Unit("pixels")]
     """Smallest step between two disparities, in pixels. At depth
     z it is a step of z * z / (f * t) * delta_d in depth.
 
-    `float32`.
+    `float32`, unit pixels.
     """
 
     def __init__(

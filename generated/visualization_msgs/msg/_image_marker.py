@@ -22,7 +22,11 @@ from std_msgs.msg import Header as std_msgs_msg_Header
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final
+    from typing import Annotated, Any, ClassVar, Final
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -114,16 +118,16 @@ class ImageMarker(Message, metaclass=Metaclass_ImageMarker):
     `int32`.
     """
 
-    position: geometry_msgs_msg_Point
+    position: Annotated[geometry_msgs_msg_Point, meaning.Unit("pixels")]
     """centre of a circle, in pixels
 
-    `geometry_msgs/Point`.
+    `geometry_msgs/Point`, unit pixels.
     """
 
-    scale: float
+    scale: Annotated[float, meaning.Unit("pixels")]
     """diameter of a circle, in pixels
 
-    `float32`.
+    `float32`, unit pixels.
     """
 
     outline_color: std_msgs_msg_ColorRGBA

@@ -23,7 +23,11 @@ from visualization_msgs.msg import MenuEntry as visualization_msgs_msg_MenuEntry
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, TypeAlias
+    from typing import Annotated, Any, ClassVar, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -82,7 +86,7 @@ class InteractiveMarker(Message, metaclass=Metaclass_InteractiveMarker):
     `string`.
     """
 
-    scale: float
+    scale: Annotated[float, meaning.Unit("m")]
     """size of the controls that the viewer draws on its own
 
     `float32`, unit m.

@@ -28,7 +28,11 @@ from visualization_msgs.msg import UVCoordinate as visualization_msgs_msg_UVCoor
 
 TYPE_CHECKING = False  # typing itself takes longer to import than this module
 if TYPE_CHECKING:
-    from typing import Any, ClassVar, Final, TypeAlias
+    from typing import Annotated, Any, ClassVar, Final, TypeAlias
+
+    from ifgen_runtime import meaning
+else:
+    from ifgen_runtime.lazy import Annotated, meaning
 
 _check_fields = checks_by_default()
 
@@ -171,7 +175,7 @@ class Marker(Message, metaclass=Metaclass_Marker):
     `geometry_msgs/Pose`.
     """
 
-    scale: geometry_msgs_msg_Vector3
+    scale: Annotated[geometry_msgs_msg_Vector3, meaning.Unit("m")]
     """Extent along x, y and z of the marker itself. Lines use x as their width, POINTS x and y, text z as
     the
     height of a capital A; of an ARROW with points x is the shaft's diameter, y the head's, z the head's

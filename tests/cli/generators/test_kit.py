@@ -113,7 +113,7 @@ def test_list_and_describe(ifgen: Run) -> None:
         "  model.py.j2  (blocks: imports, bases, additions)\n"
         in ifgen("generators", "describe", "pydantic").out
     )
-    assert json.loads(ifgen("generators", "describe", "json-schema", "--json").out)["model"] == "1.0"
+    assert json.loads(ifgen("generators", "describe", "json-schema", "--json").out)["model"] == "1.1"
     assert "did you mean 'json-schema'?" in ifgen("generators", "describe", "json-shema").err
 
 

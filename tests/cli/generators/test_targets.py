@@ -231,7 +231,7 @@ def test_a_program_that_is_not_there(ifgen: Run, program: Program) -> None:
 
 def test_a_program_that_wants_a_newer_model(ifgen: Run, program: Program) -> None:
     program(description='{"model": "1.7"}')
-    assert "generator 'mine' needs model 1.7, and ifgen has model 1.0" in ifgen("generate").err
+    assert "generator 'mine' needs model 1.7, and ifgen has model 1.1" in ifgen("generate").err
     program(description='{"model": "2.0"}')
     assert "needs model 2.0" in ifgen("generate").err
 

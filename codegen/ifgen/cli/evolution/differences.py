@@ -76,6 +76,8 @@ def breaking(
             Includes wire.
     source  Python code no longer works. Includes hash and wire.
 
+    A unit, a range or a frame that changed in a comment is a warning.
+
     PATH is as for `ifgen check`. Exits with 1 if a change breaks the category. `ifgen rules` lists the rules,
     which `ignore` and `per_file_ignores` in [tool.ifgen] and comments silence as they do warnings.
 
@@ -117,14 +119,18 @@ def _compared(settings: Settings, against: str, category: str | None, format_: s
 
 
 def _broken(old: Version, new: Version, category: Category, policy: Policy) -> list[Diagnostic]:
-    """The changes that break a category, as errors, without those that are ignored."""
+    """The changes that break a category, as errors, and those of a meaning, without ignored ones."""
     from ifgen.evolution.compare import compare
     from ifgen.evolution.edit_diagnostics import diagnostic
+    from ifgen.evolution.edits import MeaningChanged
     from ifgen.evolution.rules import is_broken
 
-    found = (diagnostic(d) for d in compare(old, new) if is_broken(category, d.edit))
+    differences = (
+        d for d in compare(old, new) if is_broken(category, d.edit) or isinstance(d.edit, MeaningChanged)
+    )
+    found = map(diagnostic, differences)
     told = _without_ignored(d for d in found if d is not None and not policy.silences(d))
-    return sorted((replace(d, severity="error") for d in told), key=_place)
+    return sorted((replace(d, severity="error") if d.breaks else d for d in told), key=_place)
 
 
 def _place(diagnostic: Diagnostic) -> tuple[str, int]:

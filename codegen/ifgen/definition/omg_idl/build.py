@@ -114,6 +114,7 @@ class _Builder:
         self._problems = problems
         self._types = Types(source, contents.typedefs, contents.enums, package, problems)
         self._checked: set[int] = set()
+        self._has_tags = "[@" in source.text or "@range" in source.text
 
     def message(self, placed: Placed[StructNode] | None, name: str) -> Message:
         """The message that a struct defines, with its constants; an empty one where there is no struct."""
@@ -134,6 +135,10 @@ class _Builder:
         for field in fields.values():
             if field.span is not None and rules.is_troublesome(field.name):
                 self._problems.warning(rules.field_name, field.name, field.span)
+        if self._has_tags:
+            from ifgen.definition.meaning.check import check_tags  # late: few files have tags
+
+            check_tags(fields.values(), constants, self._problems)
         check_python_names(fields.values(), constants.values(), self._problems)
         said = read_annotations(node.annotations, self._source, self._problems)
         return Message(

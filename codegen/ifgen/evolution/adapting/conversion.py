@@ -9,6 +9,7 @@ from math import inf
 from typing import Final, TypeAlias
 
 from ifgen.definition.interfaces import Constant, Field, Message
+from ifgen.definition.meaning.reading import meaning_of
 from ifgen.definition.types import (
     Array,
     BasicType,
@@ -153,7 +154,8 @@ def question(source: Field, target: Field, of_source: Message, of_target: Messag
     """
     if (one := _unit(source)) and (other := _unit(target)) and one != other:
         hint = _factor(one, other, source, value)
-        return f"`{target.name}` is in {target.unit}, and `{value}` in {source.unit}{hint}"
+        in_target, in_source = meaning_of(target).unit, meaning_of(source).unit
+        return f"`{target.name}` is in {in_target}, and `{value}` in {in_source}{hint}"
     constants = _constants_of(target, of_target)
     is_told = bool(constants) or (of_target.source is not None and not of_target.constants)
     changed = list(_changed(_constants_of(source, of_source), constants, value)) if is_told else []
@@ -165,7 +167,7 @@ def question(source: Field, target: Field, of_source: Message, of_target: Messag
 
 def _unit(field: Field) -> str:
     """The unit, spelled alike: `A.h` and `Ah` are one. Lock files and descriptions know none."""
-    text = re.sub(r"[\s.*\u00b7]", "", field.unit or "")
+    text = re.sub(r"[\s.*\u00b7]", "", meaning_of(field).unit or "")
     return _SPELLINGS.get(text, text)
 
 

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Final, Literal, cast
 
 from ifgen.definition.interfaces import Field, Interface, Message, Registry
+from ifgen.definition.meaning.reading import meaning_of
 from ifgen.definition.names import attribute_name, snake_case
 from ifgen.definition.spelling import spelled
 from ifgen.definition.type_description import TypeHashes, referenced_types
@@ -236,7 +237,8 @@ def _new(field: Field, direction: Direction) -> Step:
         return Step(field, default=_literal(default_value(field)))
     if isinstance(field.type, BoundedSequence | UnboundedSequence):
         return Step(field, default="[]")
-    unit = f" [{field.unit}]" if field.unit else ""
+    said = meaning_of(field).unit
+    unit = f" [{said}]" if said else ""
     what = "is new" if direction == "upgrade" else "is gone since"
     return Step(field, question=f"`{field.name}`{unit} {what}, and has no default")
 

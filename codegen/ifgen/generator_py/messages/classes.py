@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator
 
 from ifgen.definition.interfaces import Constant, Field, Message, Registry
+from ifgen.definition.meaning.reading import Reading, reading_of
+from ifgen.definition.meaning.values import Meaning, words
 from ifgen.definition.names import attribute_name, default_name
 from ifgen.definition.spelling import spelled
 from ifgen.definition.type_description import TypeHashes
@@ -135,15 +138,18 @@ def _imported(types: Iterable[NamespacedType], home: Message, facts: Facts) -> I
 def _field_text(field: Field, scope: Scope, reference: Reference) -> FieldText:
     attribute = attribute_name(field)
     python = python_field(field, attribute, scope, reference)
+    found = reading_of(field)
+    annotation = annotated(python.annotation, found.meaning, scope) if found.meaning else python.annotation
     getter = failed = ""
     if python.converted:
-        getter = f"@{scope('property')}\n    def {attribute}(self) -> {python.annotation}:"
+        getter = f"@{scope('property')}\n    def {attribute}(self) -> {annotation}:"
         failed = _failed(scope, f'self, "{attribute}"')
     return FieldText(
         name=field.name,
         attribute=attribute,
         private=f"_{attribute}",
-        docstring=docstring(_field_documentation(field), indent=8 if python.converted else 4),
+        annotation=annotation,
+        docstring=docstring(_field_documentation(field, found), indent=8 if python.converted else 4),
         getter=getter,
         failed=failed,
         python=python,
@@ -177,18 +183,47 @@ def _defaults(message: Message, fields: Iterable[FieldText], scope: Scope) -> It
             yield ConstantText(default_name(field), annotation, value, "")
 
 
-def _field_documentation(field: Field) -> str:
-    """The definition's comment on a field, and a last line with its type (bounds included) and unit."""
-    last = f"`{spelled(field.type)}`"
-    if field.unit:
-        last += f", unit {field.unit}"
-    return f"{field.documentation}\n\n{last}." if field.documentation else f"{last}."
+def annotated(annotation: str, meaning: Meaning, scope: Scope) -> str:
+    """A type with the meaning of its field, as `ifgen_runtime.meaning` has it."""
+    markers = ", ".join(f"{scope('meaning')}.{marker}" for marker in _markers(meaning))
+    return f"{scope('Annotated')}[{annotation}, {markers}]"
+
+
+def _markers(meaning: Meaning) -> Iterator[str]:
+    if meaning.unit:
+        yield f"Unit({_text(meaning.unit)})"
+    if meaning.range:
+        bounds = {"minimum": meaning.range.minimum, "maximum": meaning.range.maximum}
+        yield f"Range({', '.join(f'{name}={value}' for name, value in bounds.items() if value is not None)})"
+    if meaning.enum:
+        yield f"Constants({', '.join(map(_text, meaning.enum))})"
+    if meaning.frame:
+        yield f"Frame({_text(meaning.frame)})"
+    if meaning.invalid:
+        value = "" if meaning.invalid.spelled == "NaN" else f"value={meaning.invalid.spelled}"
+        when = f"when={_text(meaning.invalid.when)}" if meaning.invalid.when else ""
+        yield f"Invalid({', '.join(filter(None, (value, when)))})"
+    if meaning.deprecated is not None:
+        yield f"Deprecated({_text(meaning.deprecated) if meaning.deprecated else ''})"
+
+
+def _text(text: str) -> str:
+    """A text as a literal that ruff leaves alone; no line of a comment has a line break in it."""
+    return json.dumps(text, ensure_ascii=not text.isprintable())
+
+
+def _field_documentation(field: Field, found: Reading) -> str:
+    """The definition's comment on a field, and a last line with its type (bounds included) and meaning."""
+    last = ", ".join(filter(None, (f"`{spelled(field.type)}`", words(found.meaning))))
+    return f"{found.text}\n\n{last}." if found.text else f"{last}."
 
 
 def _constant_documentation(constant: Constant) -> str:
     """The definition's comment on a constant, and a last line with its unit if it has one."""
-    unit = f"Unit {constant.unit}." if constant.unit else ""
-    return "\n\n".join(filter(None, (constant.documentation, unit)))
+    found = reading_of(constant)
+    meaning = words(found.meaning)
+    last = f"{meaning[0].upper()}{meaning[1:]}." if meaning else ""
+    return "\n\n".join(filter(None, (found.text, last)))
 
 
 def _tuple(names: Iterable[str]) -> str:

@@ -54,13 +54,15 @@ class ViewsText:
 class FieldText:
     """A field: its name in the definition, its attribute, its private name, and what it is in Python.
 
-    Where a property converts, `getter` is its head, and `failed` what its setter does with what it cannot
-    convert; else both are empty.
+    `annotation` is that of `python` with the field's meaning: `Annotated[float, meaning.Unit("m")]`. Where a
+    property converts, `getter` is its head, and `failed` what its setter does with what it cannot convert;
+    else both are empty.
     """
 
     name: str
     attribute: str
     private: str
+    annotation: str
     docstring: str
     getter: str
     failed: str

@@ -2,16 +2,18 @@
 
 The rule: an integer field owns the constants of its own type whose names begin with the field's name in
 capitals and an underscore: `int8 STATUS_ABORTED=6` belongs to `int8 status`. If two fields fit, the longer
-name wins. At least two constants make an enumeration. Members drop the common part (`ABORTED`) if the rest is
-a name.
+name wins. A field whose comment says `[@enum MODE OTHER]` owns those that begin with `MODE_` and `OTHER_`
+instead, and two fields may say so of the same constants. At least two constants make an enumeration. Members
+drop the common part (`ABORTED`) if the rest is a name.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from ifgen.definition.interfaces import Constant, Field, Message
+from ifgen.definition.meaning.reading import meaning_of, named_constants
 from ifgen.definition.names import attribute_name
 from ifgen.definition.types import ValueType, element_of
 from ifgen.generator_py.messages.context import EnumText
@@ -43,19 +45,31 @@ def values(message: Message) -> Iterator[tuple[Field, tuple[Constant, ...]]]:
         if owner is not None:
             owned.setdefault(owner.name, []).append(constant)
     for field in message.fields:
-        constants = owned.get(field.name, ())
+        constants = _tagged(field, message) or owned.get(field.name, ())
         if len(constants) > 1:
             yield field, tuple(constants)
 
 
+def _tagged(field: Field, message: Message) -> tuple[Constant, ...]:
+    """The constants that `[@enum NAME]` names, of the type of the field."""
+    constants = named_constants(field, message) if _has_tag(field) else ()
+    return constants if all(each.type == element_of(field.type) for each in constants) else ()
+
+
+def _has_tag(field: Field) -> bool:
+    return "@enum" in field.documentation or (field.unit is not None and "@enum" in field.unit)
+
+
 def _enums(message: Message, spelling: Callable[[str], str]) -> Iterator[EnumText]:
     for field, constants in values(message):
-        text = f"The values of `{field.name}`, as an enumeration of the constants `{_prefix(field)}...`."
+        prefixes = _prefixes(field)
+        names = " and ".join(f"`{prefix}...`" for prefix in prefixes)
+        text = f"The values of `{field.name}`, as an enumeration of the constants {names}."
         yield EnumText(
             name=enum_name(field),
             base=spelling("IntEnum"),
             view=spelling("enum_view"),
-            members=tuple((_member_name(constant, field), repr(constant.value)) for constant in constants),
+            members=tuple(_members(constants, prefixes)),
             docstring=docstring(text, indent=12),
         )
 
@@ -76,6 +90,20 @@ def _prefix(field: Field) -> str:
     return f"{field.name.upper()}_"
 
 
-def _member_name(constant: Constant, field: Field) -> str:
-    short = constant.name.removeprefix(_prefix(field))
-    return short if short.isidentifier() else constant.name
+def _prefixes(field: Field) -> tuple[str, ...]:
+    """The prefixes of the constants that a field owns, of which its members keep none."""
+    named = meaning_of(field).enum if _has_tag(field) else ()
+    return tuple(f"{name}_" for name in named) or (_prefix(field),)
+
+
+def _members(constants: Sequence[Constant], prefixes: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """The name and the value of each member; with several prefixes two may have one short name."""
+    short = [_short(constant.name, prefixes) for constant in constants]
+    for constant, name in zip(constants, short, strict=True):
+        yield constant.name if short.count(name) > 1 else name, repr(constant.value)
+
+
+def _short(name: str, prefixes: Sequence[str]) -> str:
+    prefix = next((each for each in prefixes if name.startswith(each)), "")
+    short = name.removeprefix(prefix)
+    return short if short.isidentifier() else name

@@ -6,6 +6,7 @@ import math
 import re
 import struct
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Final, assert_never
 
 from ifgen import model, resources
@@ -22,6 +23,9 @@ from ifgen.definition.interfaces import (
     Service,
 )
 from ifgen.definition.literals import INTEGER_RANGES
+from ifgen.definition.meaning.reading import deprecation_of, is_closed, named_constants, reading_of
+from ifgen.definition.meaning.units import normal
+from ifgen.definition.meaning.values import Meaning, words
 from ifgen.definition.names import snake_case
 from ifgen.definition.references import references
 from ifgen.definition.spelling import spelled, spelled_value
@@ -159,7 +163,7 @@ class _Builder:
             names=safe_names(interface.name),
             position=_position(interface.span),
             description=describe(interface, self._registry),
-            meanings={},
+            meanings=model.Meaning(),
         )
 
     def _service(self, service: Service) -> model.Service:
@@ -224,12 +228,13 @@ class _Builder:
             position=_position(message.span),
             wire=self._wires.of(message, self._extents),
             description=describe(message, self._registry),
-            meanings={},
+            meanings=model.Meaning(deprecated=deprecation_of(message)),
         )
 
     def _constant(self, constant: Constant, message: Message) -> model.Constant:
         id_ = f"{message.type_name}#{constant.name}"
         self._place(id_, constant.span)
+        found = reading_of(constant)
         return model.Constant(
             id=id_,
             name=constant.name,
@@ -237,17 +242,18 @@ class _Builder:
             value=spelled_value(constant.value),
             exact_value=_value(constant.value, constant.type),
             python_value=plain_literal(constant.value),
-            documentation=constant.documentation,
-            unit=constant.unit,
+            documentation=found.text,
+            unit=found.meaning.unit,
             annotations=_annotations(constant.annotations),
             names=safe_names(constant.name),
             position=_position(constant.span),
-            meanings={},
+            meanings=_meaning(found.meaning),
         )
 
     def _field(self, field: Field, message: Message, constants: Sequence[Constant]) -> model.Field:
         id_ = f"{message.type_name}.{field.name}"
         self._place(id_, field.span)
+        found = reading_of(field)
         default, element = field.default_value, element_of(field.type)
         elements = default if isinstance(default, tuple) else None
         single = None if isinstance(default, tuple) else default
@@ -259,13 +265,13 @@ class _Builder:
             default_value=None if single is None else _value(single, element),
             default_elements=None if elements is None else tuple(_value(each, element) for each in elements),
             python_default=_python_default(field),
-            documentation=field.documentation,
-            unit=field.unit,
+            documentation=found.text,
+            unit=found.meaning.unit,
             annotations=_annotations(field.annotations),
             constants=tuple(constant.name for constant in constants),
             names=safe_names(field.name),
             position=_position(field.span),
-            meanings={},
+            meanings=_meaning(found.meaning, named_constants(field, message), is_closed(field)),
         )
 
     def _place(self, id_: str, span: Span | None) -> None:
@@ -355,6 +361,23 @@ def _spelled(type_: FieldType) -> str:
 
 def _position(span: Span | None) -> model.Position | None:
     return None if span is None else model.Position(*span.source.position(span.start))
+
+
+def _meaning(meaning: Meaning, constants: Sequence[Constant] = (), closed: bool = False) -> model.Meaning:
+    range_, invalid = meaning.range, meaning.invalid
+    return model.Meaning(
+        unit=meaning.unit,
+        normal_unit=normal(meaning.unit) if meaning.unit else None,
+        range=model.Range(range_.minimum, range_.maximum) if range_ else None,
+        enum=tuple(constant.name for constant in constants),
+        closed=closed and bool(constants),
+        frame=meaning.frame,
+        invalid=model.Invalid("nan" if math.isnan(invalid.value) else invalid.value, invalid.when)
+        if invalid
+        else None,
+        deprecated=meaning.deprecated,
+        summary=words(replace(meaning, unit=None)),
+    )
 
 
 def _annotations(annotations: Iterable[Annotation]) -> tuple[model.Annotation, ...]:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from array import array
 from collections.abc import Iterable
 
-from ifgen.definition.interfaces import Constant, Message, Registry
+from ifgen.definition.interfaces import Constant, Field, Message, Registry
 from ifgen.definition.literals import INTEGER_RANGES
+from ifgen.definition.meaning.reading import is_closed, meaning_of
+from ifgen.definition.meaning.values import Meaning, Range
 from ifgen.definition.names import attribute_name
 from ifgen.definition.types import (
     Array,
@@ -19,6 +23,7 @@ from ifgen.definition.types import (
     UnboundedString,
     UnboundedWString,
     ValueType,
+    element_of,
 )
 from ifgen.generator_py.imports import LINE_LENGTH, natural
 from ifgen.generator_py.messages import enums
@@ -97,7 +102,7 @@ class Strategies:
         if message.type_name not in self._messages:
             constants = {field.name: values for field, values in enums.values(message)}
             arguments = [
-                f"{attribute_name(field)}={self.value(field.type, constants.get(field.name, ()))}"
+                f"{attribute_name(field)}={self._field(field, constants.get(field.name, ()))}"
                 for field in message.fields
             ]
             name = self.strategy_name(message)
@@ -105,19 +110,44 @@ class Strategies:
             self._messages[message.type_name] = name, strategy
         return self._messages[message.type_name][0]
 
-    def value(self, type_: FieldType, constants: tuple[Constant, ...] = ()) -> str:
-        """The strategy for the values of a field's type; `constants` are half of them."""
+    def _field(self, field: Field, constants: tuple[Constant, ...]) -> str:
+        """The strategy for the values of a field, which are those of its meaning."""
+        element = element_of(field.type)
+        text = _within(element, meaning_of(field)) if isinstance(element, BasicType) else ""
+        if text and not constants:
+            return self.value(field.type, meant=text)
+        return self.value(field.type, constants, closed=bool(constants) and is_closed(field))
+
+    def value(
+        self,
+        type_: FieldType,
+        constants: tuple[Constant, ...] = (),
+        *,
+        closed: bool = False,
+        meant: str = "",
+    ) -> str:
+        """The strategy for the values of a field's type.
+
+        `constants` are half of the values, all if they are `closed`; `meant` is the strategy for an element.
+        """
         match type_:
             case Array(value_type, size):
-                return f"exactly({size}, {self.value(value_type, constants)}{self._drawn(value_type)})"
+                element = self.value(value_type, constants, closed=closed, meant=meant)
+                return f"exactly({size}, {element}{self._drawn(value_type)})"
             case BoundedSequence(value_type, bound) if bound <= _DRAWN_AT_BOUND:
-                return f"at_most({bound}, {self.value(value_type, constants)}{self._drawn(value_type)})"
+                element = self.value(value_type, constants, closed=closed, meant=meant)
+                return f"at_most({bound}, {element}{self._drawn(value_type)})"
             case BoundedSequence(value_type) | UnboundedSequence(value_type):
-                return f"some({self.value(value_type, constants)}{self._drawn(value_type)})"
+                element = self.value(value_type, constants, closed=closed, meant=meant)
+                return f"some({element}{self._drawn(value_type)})"
+            case BasicType() if meant:
+                return meant
             case BasicType(name):
                 values = dict.fromkeys(repr(constant.value) for constant in constants)
-                preferred = f"st.sampled_from([{', '.join(values)}]) | " if values else ""
-                return preferred + self._named(*_VALUES[name])
+                preferred = f"st.sampled_from([{', '.join(values)}])" if values else ""
+                if preferred and closed:
+                    return preferred
+                return " | ".join(filter(None, (preferred, self._named(*_VALUES[name]))))
             case BoundedString(bound) | BoundedWString(bound):
                 characters = _CHARACTERS if isinstance(type_, BoundedString) else _WIDE_CHARACTERS
                 text = f"st.text({self._named(*characters)}, max_size={bound})"
@@ -153,6 +183,53 @@ class Strategies:
     def _named(self, name: str, strategy: str) -> str:
         self._values[name] = strategy
         return name
+
+
+def _within(type_: BasicType, meaning: Meaning) -> str:
+    """The strategy for a number in its range, or for its invalid value; empty if no range fits its type.
+
+    NaN is left out, because it equals nothing.
+    """
+    if meaning.range is None or type_.typename in {"boolean", "octet", "char"}:
+        return ""
+    if type_.typename in INTEGER_RANGES:
+        least, most = INTEGER_RANGES[type_.typename]
+        low = least if meaning.range.minimum is None else max(least, math.ceil(meaning.range.minimum))
+        high = most if meaning.range.maximum is None else min(most, math.floor(meaning.range.maximum))
+        found = f"st.integers({low}, {high})" if low <= high else ""
+    else:
+        found = _floats(meaning.range, 32 if type_.typename == "float" else 64)
+    invalid = meaning.invalid
+    if not found or invalid is None or math.isnan(invalid.value) or invalid.value in meaning.range:
+        return found
+    return f"{found} | st.just({invalid.value if isinstance(invalid.value, int) else float(invalid.value)})"
+
+
+def _floats(range_: Range, bits: int) -> str:
+    """Floats in a range, whose bounds become floats of the given number of bits."""
+    low, high = (None if bound is None else float(bound) for bound in (range_.minimum, range_.maximum))
+    if bits == 32:
+        low, high = _float32(low, math.inf), _float32(high, -math.inf)
+        if (low is not None and math.isinf(low)) or (high is not None and math.isinf(high)):
+            return ""
+    if low is not None and high is not None and low > high:
+        return ""
+    bounds = {"min_value": low, "max_value": high}
+    given = [f"{name}={bound!r}" for name, bound in bounds.items() if bound is not None]
+    width = ", width=32" if bits == 32 else ""
+    return f"st.floats({', '.join(given)}, allow_nan=False, allow_infinity=False{width})"
+
+
+def _float32(bound: float | None, towards: float) -> float | None:
+    """The float32 next to a bound, on the side that is within the range."""
+    if bound is None:
+        return None
+    rounded = array("f", [bound])[0]
+    is_outside = rounded < bound if towards > 0 else rounded > bound
+    if not is_outside or math.isinf(rounded):
+        return rounded
+    step = math.ulp(1.0) * 2**29 * max(abs(rounded), 2.0**-126)
+    return array("f", [rounded + math.copysign(step, towards)])[0]
 
 
 def enclosed(opening: str, parts: Iterable[str], closing: str, column: int, indent: int = 0) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from rmw_local.graph import GraphNode
 from rmw_local.message import DecodeError, MessageType, message_type
@@ -21,6 +22,19 @@ from .structs import rcl_publisher_event_type_t, rcl_subscription_event_type_t
 if TYPE_CHECKING:
     from rmw_local.content_filter import ContentFilter
     from rmw_local.mismatch.origin import Origin
+
+
+CHECKS: Final = bool(os.environ.get("IFGEN_CHECK_FIELDS"))
+"""Whether endpoints look at the ranges of fields; `ifgen_runtime.checks.ranges` has the details."""
+
+
+def _look(endpoint: EndpointHandle, cls: type[Any], topic: str, verb: str) -> Callable[[Any], None] | None:
+    """The function that looks at the messages of an endpoint, and warns in the name of its node."""
+    from ifgen_runtime.checks.ranges import look_at  # late: few programs check
+
+    from rclpy.logging import get_logger
+
+    return look_at(cls, topic, verb, get_logger(endpoint.get_logger_name()).warning)
 
 
 def rclpy_serialize(pymsg: Any, pymsg_type: type[Any]) -> bytes:
@@ -54,6 +68,13 @@ class Publisher(EndpointHandle):
         )
         self._context = self._node.context
         self._publish = writer.publish
+        if CHECKS and (look := _look(self, pymsg_type, writer.topic, "published")):
+
+            def look_and_publish(message: Any) -> None:
+                look(message)
+                writer.publish(message)
+
+            self._publish = look_and_publish
 
     @property
     def writer(self) -> Any:
@@ -146,6 +167,9 @@ class Subscription(SourceHandle, EndpointHandle):
         self._kind = kind
         self._deserialize = kind.deserialize
         self._drops = kind.drops
+        self._look = _look(self, pymsg_type, reader.topic, "received") if CHECKS else None
+        if self._look:
+            self._deserialize = self._looking(kind.deserialize)
 
     @property
     def reader(self) -> Any:
@@ -184,7 +208,19 @@ class Subscription(SourceHandle, EndpointHandle):
     def use_views(self) -> None:
         """Leave sequences of numbers in the bytes that all subscriptions share, from now on."""
         self._reader.refuse_parcels()
-        self._deserialize = self._kind.deserialize_views
+        views = self._kind.deserialize_views
+        self._deserialize = self._looking(views) if self._look else views
+
+    def _looking(self, deserialize: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """The same, with a look at the ranges of each message."""
+
+        def deserialize_and_look(data: Any) -> Any:
+            message = deserialize(data)
+            assert self._look is not None
+            self._look(message)
+            return message
+
+        return deserialize_and_look
 
     def get_topic_name(self) -> str:
         """Return the topic's full name."""

@@ -1,0 +1,1 @@
+"""The meaning of fields beyond their types: units, ranges, enumerations, frames, invalid values."""
