@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Final
 
+from ifgen.definition.meaning.comparison import mismatches
+from ifgen.definition.meaning.values import Meaning
 from ifgen.diagnostics import Diagnostic
 from ifgen.nodl.model import Category, NodeDescription, qos_mismatch
 
@@ -246,6 +249,9 @@ def writers(view: View) -> Iterator[Diagnostic]:
         )
 
 
+_RULES_OF_MEANING: Final = {"unit": "system-unit", "frame": "system-frame"}
+
+
 def meanings(view: View) -> Iterator[Diagnostic]:
     """Units, frames and versions that the two sides say differently."""
     for meeting in view.meetings:
@@ -253,15 +259,16 @@ def meanings(view: View) -> Iterator[Diagnostic]:
             if provider.terms is None or user.terms is None:
                 continue
             labels = (at(user.terms.span, user.node), at(provider.terms.span, provider.node))
-            for rule, word in (("system-unit", "unit"), ("system-frame", "frame")):
-                given, wanted = getattr(provider.terms, word), getattr(user.terms, word)
-                if given and wanted and given != wanted:
-                    yield finding(
-                        rule=rule,
-                        message=f"{provider.node} sends `{meeting.name}` in the {word} `{given}`, "
-                        f"and {user.node} takes it for `{wanted}`",
-                        labels=labels,
-                    )
+            sent = Meaning(unit=provider.terms.unit or None, frame=provider.terms.frame or None)
+            taken = Meaning(unit=user.terms.unit or None, frame=user.terms.frame or None)
+            for difference in mismatches(sent, taken):
+                yield finding(
+                    rule=_RULES_OF_MEANING[difference.aspect],
+                    message=f"{provider.node} sends `{meeting.name}` in the {difference.aspect} "
+                    f"`{difference.one}`, and {user.node} takes it for `{difference.other}`",
+                    labels=labels,
+                    help="a factor lies between them" if difference.is_scale else None,
+                )
             given, wanted = provider.terms.version, user.terms.version
             if given and wanted and (why := refused_version(given, wanted)):
                 yield finding(
