@@ -13,7 +13,7 @@ from threading import RLock
 from typing import Any, Final
 
 from ifgen.definition.interfaces import Message
-from ifgen.generator_py.codec.python.text import CodecText, render
+from ifgen.generator_py.codec.text import CodecText, render
 from ifgen.generator_py.messages.classes import Facts
 from ifgen.generator_py.names import class_reference, slot_name
 from ifgen.wire.plan import plan

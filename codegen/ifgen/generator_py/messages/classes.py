@@ -16,7 +16,7 @@ from ifgen.definition.types import (
     NamespacedType,
     UnboundedSequence,
 )
-from ifgen.generator_py.codec.python.text import CodecText, render
+from ifgen.generator_py.codec.text import CodecText, render
 from ifgen.generator_py.imports import IN_MESSAGES, Import, Scope
 from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass, ViewsText
 from ifgen.generator_py.messages.enums import enums

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ifgen.generator_py.codec.python.text import CodecText
+from ifgen.generator_py.codec.text import CodecText
 from ifgen.generator_py.messages.fields import PythonField
 
 
