@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Container, Iterable, Iterator
-from difflib import get_close_matches
 from pathlib import Path
 
 import jinja2
@@ -12,7 +11,7 @@ import jinja2.meta
 
 from ifgen import resources
 from ifgen.config.customization import Customization, Output
-from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, did_you_mean
 from ifgen.generator_py.templates.check.check import Checker
 from ifgen.generator_py.templates.check.syntax import Template, parse, refusal
 from ifgen.generator_py.templates.check.types import spelled
@@ -140,14 +139,13 @@ def _trimmed(path: Path) -> Diagnostic | None:
 
 
 def _unused(path: Path, name: str, ours: dict[str, Path]) -> Diagnostic:
-    close = get_close_matches(name, ours, n=1)
-    advice = f"did you mean {close[0]}?" if close else "`ifgen templates list` names all of them"
+    advice = did_you_mean(name, ours, form="{}") or "`ifgen templates list` names all of them"
     message = f"{path} replaces nothing: ifgen has no template {name}, and none of yours uses it"
     return Diagnostic("unused-template", message, help=advice)
 
 
 def _unknown(output: Output, known: dict[str, Path]) -> Diagnostic:
-    close = get_close_matches(output.template, known, n=1)
-    advice = f"did you mean {close[0]}?" if close else "ifgen looks for it in `templates` of [tool.ifgen]"
+    hint = did_you_mean(output.template, known, form="{}")
+    advice = hint or "ifgen looks for it in `templates` of [tool.ifgen]"
     message = f"output '{output.name}' cannot be made: there is no template {output.template}"
     return Diagnostic("unknown-template", message, output.label("template"), help=advice)
