@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from rmw_local import observer, timing
 from rmw_local.mismatch.encounter import Marking
+from rmw_local.mismatch.origin import Origin
 from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC, RELIABLE
 from rmw_local.status import DeadlineStatus, Lease, LivelinessLostStatus
 from rmw_local.topic import Endpoint
@@ -210,8 +211,6 @@ class Writer(Endpoint):
 
     def _doubt(self) -> None:
         """Mark all messages, to readers that there are and to those to come."""
-        from rmw_local.mismatch.origin import Origin  # late: few programs publish bytes
-
         with self.node.participant.domain.lock:
             if self._own_origin is None:
                 self._own_origin = Origin("topic", self.topic, self.node, is_raw=True)
