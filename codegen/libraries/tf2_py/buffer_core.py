@@ -11,8 +11,7 @@ from tf2_py import messages
 from tf2_py.caches import Cache, seconds
 from tf2_py.messages import complaint, require, to_message, to_nanoseconds
 from tf2_py.transforms import Vector, compose, normalized
-from tf2_py.tree import FrameTree, without_detour
-from tf2_py.velocity import Twist, twist_between
+from tf2_py.tree import FrameTree, Twist, twist_between, without_detour
 
 # What a rate is worked out with if all transforms are of one time [ns].
 _SHORTEST_SPAN = 100_000

@@ -22,7 +22,7 @@ from ifgen.definition.types import (
     ValueType,
 )
 from ifgen.generator_py.imports import LINE_LENGTH, natural
-from ifgen.generator_py.messages import enums
+from ifgen.generator_py.messages import context
 from ifgen.generator_py.names import interface_name
 from ifgen.nodl import validators
 from ifgen.nodl.model import Parameter, ParameterValue, ScalarValue, Validator
@@ -223,7 +223,7 @@ class Strategies:
     def message(self, message: Message) -> str:
         """The name of the strategy for messages of this class."""
         if message.type_name not in self._messages:
-            constants = {field.name: values for field, values in enums.values(message)}
+            constants = {field.name: values for field, values in context.values(message)}
             arguments = [
                 f"{attribute_name(field)}={self.value(field.type, constants.get(field.name, ()))}"
                 for field in message.fields
