@@ -97,7 +97,8 @@ def holds(condition: str, given: dict[str, str]) -> bool:
 def test_names_and_versions_agree() -> None:
     """The names and versions that `ifgen init` writes exist."""
     hooks = [hook["id"] for hook in loaded(".pre-commit-hooks.yaml")]
-    assert set(hooks) - set(project_files.HOOKS) == {"ifgen-breaking"}, "which needs a choice of a revision"
+    left_out = {"ifgen-breaking", "ifgen-fmt"}  # one needs a choice of a revision, the other is one of taste
+    assert set(hooks) - set(project_files.HOOKS) == left_out
     workflow = yaml.safe_load(resources.skeleton("workflow.yml", revision=f"v{ifgen.__version__}"))
     action = workflow["jobs"]["ifgen"]["steps"][1]["uses"]
     assert action == f"{project_files.REPOSITORY.removeprefix('https://github.com/')}@v{ifgen.__version__}"
@@ -138,7 +139,7 @@ def test_the_action(project: Path) -> None:
         done = list(steps(project, skip=INSTALL, **inputs))
         return [name for name, _ in done], done[-1][1]
 
-    check, against, compare, generate, test = [
+    check, fmt, against, compare, generate, test = [
         step["name"] for step in loaded("action.yml")["runs"]["steps"]
     ][2:]
     names, last = outcome()
@@ -149,6 +150,8 @@ def test_the_action(project: Path) -> None:
     assert " passed" in last.stdout
     names, last = outcome(generated="")
     assert (names, last.returncode) == ([check, compare], 0)
+    names, last = outcome(generated="", fmt="true")
+    assert (names, last.returncode) == ([check, fmt, compare], 0)
     names, last = outcome(generated="", against="interfaces")
     assert (names, last.returncode) == ([check, against, compare], 0)
 

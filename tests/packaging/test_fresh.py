@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import platform
 import re
 import shutil
@@ -46,11 +47,15 @@ def programs(built: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def path(programs: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A PATH with only our programs."""
-    monkeypatch.setenv("PATH", str(programs))
+def path(programs: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A PATH with only our programs, and what README's lines need of a shell."""
+    shell = tmp_path / "shell"
+    shell.mkdir()
+    for program in ("cut", "grep"):
+        (shell / program).symlink_to(shutil.which(program) or pytest.fail(f"{program} is not installed"))
+    monkeypatch.setenv("PATH", f"{programs}{os.pathsep}{shell}")
     assert not any(map(shutil.which, ("cc", "gcc", "clang", "make", "cmake")))
-    return str(programs)
+    return os.environ["PATH"]
 
 
 def test_what_is_built(built: Path) -> None:
@@ -78,7 +83,7 @@ def test_on_real_rclpy(path: str, tmp_path: Path) -> None:
     found = replayed(tmp_path, path, real).splitlines()
     # Sometimes the middleware prints a message of its own, about a client that has gone.
     assert not [line for line in real.splitlines() if line not in found]
-    said = run(Path(path) / "ifgen", "doctor", cwd=tmp_path)
+    said = run("ifgen", "doctor", cwd=tmp_path)
     assert "(from a folder of wheels: " in said
     assert "ifgen-ros-native 0.1.0: never-compiled packages work" in said
 

@@ -83,11 +83,17 @@ def test_examples_work(tmp_path: Path) -> None:
 
 def project(folder: Path) -> None:
     """The files that the examples name, in a repository with two versions of a message."""
-    for name, text in {"bringup.launch.py": BRINGUP, "talker.py": TALKER, "listener.py": TALKER}.items():
+    programs = ("talker.py", "listener.py", "patrol.py")
+    for name, text in {"bringup.launch.py": BRINGUP, **dict.fromkeys(programs, TALKER)}.items():
         (folder / name).write_text(text.replace("talker", name.partition(".")[0]))
     (folder / "nodl").mkdir()
     others = {"testee.py": TESTEE, "robot.nodl.xml": OLD_NODL}
-    for name, text in {**others, "nodl/talker.nodl.yaml": NODL, "described.nodl.yaml": NODL}.items():
+    for name, text in {
+        **others,
+        "nodl/talker.nodl.yaml": NODL,
+        "nodl/patrol.nodl.yaml": NODL,
+        "described.nodl.yaml": NODL,
+    }.items():
         (folder / name).write_text(text)
     message = folder / "interfaces/demo_msgs/msg/Pose.msg"
     message.parent.mkdir(parents=True)

@@ -16,8 +16,10 @@ Command: TypeAlias = Callable[..., Any]
 class _Existing(click.Path):
     """A path that exists. If it does not, the error names those beside it that look alike."""
 
-    def __init__(self, *, file_okay: bool = True, dir_okay: bool = True) -> None:
-        super().__init__(exists=True, file_okay=file_okay, dir_okay=dir_okay, path_type=Path)
+    def __init__(self, *, file_okay: bool = True, dir_okay: bool = True, allow_dash: bool = False) -> None:
+        super().__init__(
+            exists=True, file_okay=file_okay, dir_okay=dir_okay, allow_dash=allow_dash, path_type=Path
+        )
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         try:
@@ -29,6 +31,8 @@ class _Existing(click.Path):
 
 
 EXISTING = _Existing()
+EXISTING_OR_DASH = _Existing(allow_dash=True)
+"""An existing path, or - for standard input."""
 EXISTING_FILE = _Existing(dir_okay=False)
 FOLDER = _Existing(file_okay=False)
 OUTPUT_FOLDER = click.Path(file_okay=False, path_type=Path)

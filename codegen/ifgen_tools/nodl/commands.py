@@ -178,7 +178,7 @@ def diff(
 @nodl.command(
     cls=_WithPrograms,
     options_metavar="[OPTIONS]",
-    epilog="Example: ifgen nodl conform /talker --file nodl/talker.nodl.yaml -- talker.py",
+    epilog="Example: ifgen nodl conform /patrol --file nodl/patrol.nodl.yaml -- patrol.py",
 )
 @click.argument("node", metavar="[NODE] [-- PROGRAM [ARGS]...]", required=False)
 @click.option("--file", "file", metavar="FILE", type=EXISTING_FILE, required=True, help="The document.")
