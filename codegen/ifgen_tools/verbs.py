@@ -9,9 +9,6 @@ from typing import Any, Literal, TypeAlias, TypeVar
 
 import click
 
-from ifgen_tools.qos import QosChoice
-from ifgen_tools.texts.style import Style
-
 TransportChoice: TypeAlias = Literal["local", "rclpy", "auto"]
 """The values of `--transport`."""
 
@@ -131,80 +128,3 @@ class ManyCommand(click.Command):
             if not has_value and (position + 1 == len(args) or args[position + 1].startswith("-")):
                 raise click.UsageError(f"Option '{current}' requires at least one value.", ctx)
         return super().parse_args(ctx, spread)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GetOptions(GraphOptions):
-    """The options of `lifecycle get`; without a node it is about all of them."""
-
-    node: str | None
-    include_hidden: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TransitionsOptions(NodeOptions):
-    """The options of `lifecycle list`."""
-
-    all_: bool = False
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SetOptions(NodeOptions):
-    """The options of `lifecycle set`; the transition is its label or number."""
-
-    transition: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EchoOptions(GraphOptions):
-    """The options of `topic echo`."""
-
-    name: str
-    message_type: str | None
-    once: bool
-    timeout: float | None
-    fields: tuple[str, ...]
-    filter_expression: str | None
-    csv: bool
-    raw: bool
-    style: Style
-    include_message_info: bool
-    no_lost_messages: bool
-    qos: QosChoice
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PubOptions(GraphOptions):
-    """The options of `topic pub`."""
-
-    name: str
-    message_type: str
-    values: str | None
-    stdin: bool
-    rate: float
-    once: bool
-    times: int | None
-    print_every: int
-    wait_matching: int | None
-    max_wait: float | None
-    keep_alive: float
-    node_name: str | None
-    qos: QosChoice
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RateOptions(GraphOptions):
-    """The options of `topic bw` and `topic delay`."""
-
-    name: str
-    window: int
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HzOptions(GraphOptions):
-    """The options of `topic hz`."""
-
-    names: tuple[str, ...]
-    window: int
-    filter_expression: str | None
-    wall_time: bool

@@ -14,8 +14,8 @@ from typing import Any, Final
 from rclpy import subscription as subscriptions
 
 from ifgen_runtime.adapters import short
-from ifgen_runtime.mismatch.limits import SeenSet
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
+from ifgen_runtime.mismatch.reporting import SeenSet
 from ifgen_runtime.real_rclpy.carriers import Subscription, decoded
 from ifgen_runtime.real_rclpy.endpoints import Part, parts_of
 from ifgen_runtime.real_rclpy.peers import Others, Peer, applied, differs

@@ -14,9 +14,17 @@ from typing import Any, Final
 from rclpy.logging import get_logger
 
 from ifgen_runtime.field_types import type_name
-from ifgen_runtime.mismatch.limits import SeenSet, WarningLimit
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.mismatch.reporting import Definition, Mismatch, Side, definition_of, in_one_line, report
+from ifgen_runtime.mismatch.reporting import (
+    Definition,
+    Mismatch,
+    SeenSet,
+    Side,
+    WarningLimit,
+    definition_of,
+    in_one_line,
+    report,
+)
 from ifgen_runtime.mismatch.type_description_client import Definitions, Question, node_connection
 from ifgen_runtime.real_rclpy import register
 from ifgen_runtime.real_rclpy.endpoints import Endpoint, Part

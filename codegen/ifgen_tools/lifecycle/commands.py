@@ -10,7 +10,8 @@ from ifgen.command_kit import options
 from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion
-from ifgen_tools.verbs import GetOptions, ListOptions, SetOptions, TransitionsOptions, takes
+from ifgen_tools.lifecycle.options import GetOptions, SetOptions, TransitionsOptions
+from ifgen_tools.verbs import ListOptions, takes
 
 # Late imports: each verb loads what it needs.
 

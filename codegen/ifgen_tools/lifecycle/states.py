@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import ToolError
 
+from ifgen_tools.lifecycle.options import GetOptions, SetOptions, TransitionsOptions
 from ifgen_tools.ros_graph import node_names
 from ifgen_tools.session import find_node, open_session
-from ifgen_tools.verbs import GetOptions, ListOptions, SetOptions, TransitionsOptions
+from ifgen_tools.verbs import ListOptions
 
 if TYPE_CHECKING:
     from lifecycle_msgs.msg import State, Transition, TransitionDescription

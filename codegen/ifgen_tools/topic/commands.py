@@ -12,16 +12,8 @@ from ifgen.command_kit.tool import ToolGroup
 
 from ifgen_tools import completion, qos
 from ifgen_tools.texts.style import style_options
-from ifgen_tools.verbs import (
-    EchoOptions,
-    FindOptions,
-    HzOptions,
-    ListOptions,
-    NameOptions,
-    PubOptions,
-    RateOptions,
-    takes,
-)
+from ifgen_tools.topic.options import EchoOptions, HzOptions, PubOptions, RateOptions
+from ifgen_tools.verbs import FindOptions, ListOptions, NameOptions, takes
 
 # Late imports: each verb loads what it needs.
 

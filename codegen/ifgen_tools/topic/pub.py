@@ -13,8 +13,8 @@ from ifgen_tools import qos
 from ifgen_tools.session import Session, open_session
 from ifgen_tools.texts.set_fields import read_yaml, set_fields
 from ifgen_tools.topic import topics
+from ifgen_tools.topic.options import PubOptions
 from ifgen_tools.types import topic_types
-from ifgen_tools.verbs import PubOptions
 
 if TYPE_CHECKING:
     from rclpy.publisher import Publisher

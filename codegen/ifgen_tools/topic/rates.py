@@ -19,7 +19,7 @@ from ifgen_tools.qos import QosChoice
 from ifgen_tools.session import Session, open_session
 from ifgen_tools.texts.formats import condition
 from ifgen_tools.topic import topics
-from ifgen_tools.verbs import HzOptions, RateOptions
+from ifgen_tools.topic.options import HzOptions, RateOptions
 
 _SECOND: Final = 1_000_000_000  # [ns]
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from rcl_interfaces.msg import SetParametersResult
-
 from rclpy.clock import ROSClock
 from rclpy.clock_type import ClockType
 from rclpy.impl.reexports import reexport
@@ -119,6 +117,8 @@ class TimeSource:
             clock.set_ros_time_override(self._last_time_set)
 
     def _on_parameter_event(self, parameter_list: list[Parameter]) -> Any:
+        from rcl_interfaces.msg import SetParametersResult  # generated: not needed to import rclpy
+
         for parameter in parameter_list:
             if parameter.name != USE_SIM_TIME_NAME:
                 continue

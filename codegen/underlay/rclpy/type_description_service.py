@@ -5,8 +5,6 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from rcl_interfaces.msg import ParameterDescriptor, ParameterType
-
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 from rclpy.parameter import Parameter
@@ -42,6 +40,11 @@ class TypeDescriptionService:
 
     def _is_wanted(self, node: Node) -> bool:
         if not node.has_parameter(START_TYPE_DESCRIPTION_SERVICE_PARAM):
+            from rcl_interfaces.msg import (  # generated: not needed to import rclpy
+                ParameterDescriptor,
+                ParameterType,
+            )
+
             descriptor = ParameterDescriptor(
                 name=START_TYPE_DESCRIPTION_SERVICE_PARAM,
                 type=ParameterType.PARAMETER_BOOL,

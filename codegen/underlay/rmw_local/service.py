@@ -122,7 +122,7 @@ class ServiceClient(ServiceEndpoint):
     def __init__(self, node: GraphNode, service_type: ServiceType, name: str, qos: ServiceQos) -> None:
         super().__init__(node, service_type, name, qos)
         self.sends, self.takes = service_type.request, service_type.response
-        # By server, itself or what stands for it (`rmw_local.mismatch.encounter`)
+        # By server, itself or what stands for it (`rmw_local.mismatch.passage`)
         self.servers: dict[ServiceServer, Any] = {}
         self._asked: dict[ServiceServer, Any] | None = {}  # a copy that nobody changes; None: to be made
         # Takes requests to those of the servers that are in other processes.

@@ -8,8 +8,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Protocol
 
 from rmw_local import observer, timing
-from rmw_local.mismatch.encounter import Marking
-from rmw_local.mismatch.origin import Origin
+from rmw_local.mismatch.passage import Marking
 from rmw_local.qos import INFINITE, MANUAL_BY_TOPIC, RELIABLE
 from rmw_local.status import DeadlineStatus, Lease, LivelinessLostStatus
 from rmw_local.topic import Endpoint
@@ -47,8 +46,8 @@ class Writer(Endpoint):
     """A volatile writer: it keeps nothing, so publishing needs no lock.
 
     `readers` is replaced, never changed; a message that is being published while a reader joins or leaves may
-    reach it or not, as on any network. Some of them are stand-ins (`rmw_local.mismatch.encounter`). Readers
-    in other processes, of which there may be tens of thousands, come and go in constant time.
+    reach it or not, as on any network. Some of them are stand-ins (`rmw_local.mismatch.passage`). Readers in
+    other processes, of which there may be tens of thousands, come and go in constant time.
     """
 
     role = "publisher"
@@ -211,6 +210,8 @@ class Writer(Endpoint):
 
     def _doubt(self) -> None:
         """Mark all messages, to readers that there are and to those to come."""
+        from rmw_local.mismatch.origin import Origin  # late: few programs publish bytes
+
         with self.node.participant.domain.lock:
             if self._own_origin is None:
                 self._own_origin = Origin("topic", self.topic, self.node, is_raw=True)

@@ -12,7 +12,7 @@ from rmw_local.writer import DurableWriter, Writer
 
 if TYPE_CHECKING:
     from rmw_local.lockstep.side import Side
-    from rmw_local.mismatch.encounter import Marking
+    from rmw_local.mismatch.passage import Marking
     from rmw_local.reader import Reader, Sample
     from rmw_local.service import Letter, ServiceEndpoint
     from rmw_local.writer import RemoteSink

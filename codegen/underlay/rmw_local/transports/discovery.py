@@ -37,7 +37,7 @@ _LATE: Final = (
     "ifgen_runtime.codec.encoding",
     "ifgen_runtime.installation",
     "ifgen_runtime.mismatch.conversion",
-    "ifgen_runtime.mismatch.limits",
+    "ifgen_runtime.mismatch.reporting",
     "ifgen_runtime.type_description",
     "importlib.util",
     "rmw_local.mismatch.encounter",

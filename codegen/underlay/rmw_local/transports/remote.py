@@ -12,7 +12,7 @@ from weakref import WeakValueDictionary
 from rmw_local import timing
 from rmw_local.graph import GraphNode, Participant
 from rmw_local.message import Elsewhere, MessageType, ServiceType
-from rmw_local.mismatch.encounter import Marking
+from rmw_local.mismatch.passage import Marking
 from rmw_local.notices import Drops, say
 from rmw_local.reader import Reader
 from rmw_local.service import ServiceClient, ServiceQos, ServiceServer

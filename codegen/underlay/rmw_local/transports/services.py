@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from rmw_local.mismatch.encounter import Converting
+from rmw_local.mismatch.passage import Converting
 from rmw_local.transports.remote import RemoteServer
 
 if TYPE_CHECKING:

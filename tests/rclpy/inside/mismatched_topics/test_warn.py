@@ -8,7 +8,7 @@ from collections.abc import Callable
 import rclpy
 from ifgen.dynamic import class_from_text
 from ifgen_runtime.codec import serialize
-from ifgen_runtime.mismatch import limits
+from ifgen_runtime.mismatch import reporting
 from ifgen_runtime.mismatch.reporting import Mismatch
 from rclpy.node import Node
 
@@ -166,14 +166,14 @@ def test_nodes_that_come_and_go_by_the_thousand_fill_neither_log_nor_memory(
         sender.destroy_publisher(publisher)
     assert len(heard) == 1000
     warnings = log()
-    assert len(warnings) == limits.WARNINGS + 1
+    assert len(warnings) == reporting.WARNINGS + 1
     assert "which is not said any more" in warnings[-1]
     for index in range(1000):
         names = f"speed{index}"
         ends = (receiver.create_subscription(New, names, print, 1), sender.create_publisher(Old, names, 1))
         receiver.destroy_subscription(ends[0])
         sender.destroy_publisher(ends[1])
-    assert len(log()) == limits.NAMES - 1 + limits.WARNINGS + 1
-    assert len(reader.node.participant.warning_limit._counts) == limits.NAMES + 1
+    assert len(log()) == reporting.NAMES - 1 + reporting.WARNINGS + 1
+    assert len(reader.node.participant.warning_limit._counts) == reporting.NAMES + 1
     gc.collect()
     assert reader.encounters == ()

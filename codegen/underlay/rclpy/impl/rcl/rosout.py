@@ -7,7 +7,6 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from rcl_interfaces.msg import Log
 from rmw_local.message import message_type
 from rmw_local.qos import RELIABLE, TRANSIENT_LOCAL, QosProfile
 
@@ -60,6 +59,8 @@ def rosout_connect(node: Node, qos: QosProfile | None = None) -> Callable[[], No
     if not node.context.arguments.rosout_logs:
         return None
     # Imported here: a process without nodes needs no message class.
+    from rcl_interfaces.msg import Log
+
     registry, name, graph_node = _here(), node.logger_name(), node.graph_node
     writer = registry.writers.get(name)
     if writer is not None and writer.node.participant.has_ended:  # its node only waits to be collected
@@ -115,6 +116,7 @@ def publish_to_rosout(
         return
     # Generated: imported once there is something to publish.
     from builtin_interfaces.msg import Time
+    from rcl_interfaces.msg import Log
 
     log: Any = Log()
     log.stamp = Time(sec=stamp // 10**9, nanosec=stamp % 10**9)
