@@ -209,3 +209,9 @@ def in_one_line(mismatch: Mismatch) -> str:
 def short(type_hash: str) -> str:
     """As much of a hash as tells it from others."""
     return type_hash[:_SHOWN]
+
+
+def left_over(rest: int, sender: str, type_name: str) -> str:
+    """The report about `rest` bytes that a message of `sender` had too many, without a full stop."""
+    number = "1 byte" if rest == 1 else f"{rest} bytes"
+    return f"{number} of a message of {sender} were left over after {type_name}. The message was delivered"

@@ -82,7 +82,10 @@ def test_bytes_that_are_left_over_are_said_once_and_counted(log: Callable[[], li
     (*_, origin), *_ = subscription.handle.reader._queue
     spin(receiver)
     (line,) = log()
-    assert "topic '/speed': 7 bytes of a message of /sender are left over. The message was delivered." in line
+    assert (
+        "topic '/speed': 7 bytes of a message of /sender were left over after demo_msgs/msg/Speed. The message was delivered"
+        in line
+    )
     assert origin.counts == {"left over": 3}
 
 
@@ -111,7 +114,7 @@ def test_published_bytes_are_looked_at_too(log: Callable[[], list[str]]) -> None
     spin(receiver)
     assert [message.value for message in got] == [0.1, 0.2, 0.3, 0.4]
     (line,) = log()
-    assert "bytes of a message of /sender are left over" in line
+    assert "bytes of a message of /sender were left over after" in line
     assert "It publishes bytes" in line
     late = node("late")
     late.create_subscription(New, "speed", got.append, LATCHED)
