@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Final, TypeAlias
 
 from ifgen.diagnostics import Diagnostic, Span
-from ifgen.reading import package_xml
+from ifgen.reading import package_xml, storage
 from ifgen.reading.listed_file import GENERATE
 
 _COMMENT: Final = re.compile(r"<!--.*?-->", re.DOTALL)
@@ -36,6 +36,21 @@ def fixed(found: Iterable[Diagnostic]) -> dict[Path, tuple[str, str]]:
     for diagnostic in found:
         for path, key, fix in _fixes(diagnostic):
             fixes.setdefault(path, {}).setdefault(key, fix)
+    return _made(fixes)
+
+
+def declaring(root: Path, name: str) -> dict[Path, tuple[str, str]]:
+    """The lists of a package that take one more dependency: their texts before and after."""
+    makers: dict[str, Fix] = {
+        package_xml.NAME: _adding_to_xml(f"<depend>{name}</depend>"),
+        "CMakeLists.txt": _adding_to_cmake(name),
+    }
+    there = {root / file: fix for file, fix in makers.items() if storage.is_file(root / file)}
+    return _made({path: {(name, 0): fix} for path, fix in there.items()})
+
+
+def _made(fixes: dict[Path, dict[_Key, Fix]]) -> dict[Path, tuple[str, str]]:
+    """The files that fixes change: their texts before and after."""
     texts: dict[Path, tuple[str, str]] = {}
     for path, by_place in fixes.items():
         before = _read(path)
@@ -53,7 +68,7 @@ def fixed(found: Iterable[Diagnostic]) -> dict[Path, tuple[str, str]]:
 
 
 def _read(path: Path) -> str:
-    return path.read_bytes().decode()
+    return storage.read_bytes(path).decode()
 
 
 def _fixes(diagnostic: Diagnostic) -> Iterable[tuple[Path, _Key, Fix]]:

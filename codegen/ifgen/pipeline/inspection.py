@@ -16,6 +16,7 @@ from ifgen.reading.search_path import SearchPath
 
 if TYPE_CHECKING:
     from ifgen.nodl.model import Nodes
+    from ifgen.reading.packages import PackageFiles
 
 # Late imports: a run that inspects interfaces needs no YAML, and one that inspects templates more.
 
@@ -54,7 +55,6 @@ def inspect(
     ROS 2 refuses is an error. Of `parameter_files`, what the nodes do not declare so is one.
     """
     from ifgen.definition.problems import one_for_each_cause
-    from ifgen.definition.resolve import resolve
 
     excluded: tuple[str, ...] = ()
     try:
@@ -66,24 +66,9 @@ def inspect(
         search = SearchPath(packages, include)
     except InputError as error:
         return Findings(error.diagnostics)
-    found: list[Diagnostic] = []
-    nodes = 0
-    loaded: Nodes | None = None
-    try:
-        found += resolve((package for package in packages if package.has_interfaces), search).warnings
-    except InputError as error:
-        found += error.diagnostics
-    if any(package.nodes for package in packages):
-        from ifgen.nodl.load import load  # with a YAML parser, which interfaces do without
-
-        try:
-            loaded = load(packages, search)
-            found += loaded.warnings
-            found += _of_users_modules(loaded, output) if output else ()
-            nodes = sum(len(package.nodes) for package in loaded.packages)
-        except InputError as error:
-            found += error.diagnostics
-    if parameter_files and not (any(package.nodes for package in packages) and loaded is None):
+    found, loaded = findings_of(packages, search, output)
+    has_nodes = any(package.nodes for package in packages)
+    if parameter_files and not (has_nodes and loaded is None):
         from ifgen.nodl.parameter_files import check
 
         described = [node for package in (loaded.packages if loaded else ()) for node in package.nodes]
@@ -98,7 +83,39 @@ def inspect(
         key=lambda diagnostic: diagnostic.severity != "error",
     )
     interfaces = sum(len(package.files) for package in packages)
+    nodes = sum(len(package.nodes) for package in loaded.packages) if loaded else 0
     return Findings(tuple(by_severity), len(packages), interfaces, nodes)
+
+
+def findings_of(
+    packages: Sequence[PackageFiles], search: SearchPath, output: Path | None
+) -> tuple[list[Diagnostic], Nodes | None]:
+    """The diagnostics about packages and their nodes, and the nodes if there are any and they can be read.
+
+    In `output`, if it is given, the user's modules of the nodes are looked at too.
+    """
+    from ifgen.definition.resolve import resolve
+
+    found: list[Diagnostic] = []
+    try:
+        found += resolve((package for package in packages if package.has_interfaces), search).warnings
+    except InputError as error:
+        found += error.diagnostics
+    if not any(package.nodes for package in packages):
+        return found, None
+    from ifgen.nodl.load import load  # with a YAML parser, which interfaces do without
+
+    try:
+        loaded = load(packages, search)
+    except InputError as error:
+        return [*found, *error.diagnostics], None
+    found += loaded.warnings
+    if output is not None:
+        try:
+            found += _of_users_modules(loaded, output)
+        except InputError as error:
+            found += error.diagnostics
+    return found, loaded
 
 
 def inspect_templates(

@@ -1,0 +1,1 @@
+"""The server behind `ifgen lsp`: answers editors while somebody writes interfaces and node descriptions."""
