@@ -67,6 +67,12 @@ def renaming_of(workspace: Workspace, symbol: Symbol, name: str) -> Renaming:
     """The changes that give a symbol a new name; InputError if it cannot have that."""
     _check(workspace, symbol, name)
     renaming = Renaming()
+    package, _, short = symbol.type_name.split("/")
+    if symbol.kind == "package":
+        _rename_package(workspace, package, name, renaming)
+        renaming.breaking = [_moved(package)]
+        renaming.python = list(_in_python(workspace, package, re.compile(rf"\b{package}\b")))
+        return renaming
     if symbol.kind == "type":
         _rename_type(workspace, symbol.type_name, name, renaming)
     else:
@@ -74,7 +80,6 @@ def renaming_of(workspace: Workspace, symbol: Symbol, name: str) -> Renaming:
         assert span is not None
         renaming.replace(span, name)
     renaming.breaking = _breaking(workspace, renaming)
-    package, _, short = symbol.type_name.split("/")
     old = short if symbol.kind == "type" else symbol.member
     pattern = rf"\b{old}\b" if symbol.kind == "type" else rf"\.{old}\b|\b{old}\s*=(?!=)"
     renaming.python = list(_in_python(workspace, package, re.compile(pattern)))
@@ -88,7 +93,7 @@ def _check(workspace: Workspace, symbol: Symbol, name: str) -> None:
     match symbol.kind:
         case "type":
             is_right = names.is_interface_name(name, interface.folder)
-        case "field":
+        case "field" | "package":
             is_right = names.is_package_name(name)  # the same rule
         case _:
             is_right = names.is_constant_name(name)
@@ -96,7 +101,9 @@ def _check(workspace: Workspace, symbol: Symbol, name: str) -> None:
         raise InputError(
             [Diagnostic("invalid-name", f"ROS does not allow '{name}' as the name of a {symbol.kind}")]
         )
-    if symbol.kind == "type":
+    if symbol.kind == "package":
+        taken = {each.name for each in workspace.packages()}
+    elif symbol.kind == "type":
         package = next(each for each in workspace.packages() if each.name == interface.package)
         taken = set(package.names(interface.folder))
     else:
@@ -122,11 +129,37 @@ def _rename_type(workspace: Workspace, type_name: str, name: str, renaming: Rena
         renaming.replace(use.span, f"{word[: len(word) - len(old)]}{name}")
     own = next(each for each in workspace.packages() if each.name == package)
     listed = re.compile(rf"(?<=\b{folder}/){old}(?=\.(?:msg|srv|action|idl)\b)")
-    for cmake in [own.root / "CMakeLists.txt"]:
-        _replace_all(workspace, cmake.absolute(), listed, name, renaming)
+    _replace_all(workspace, own.root.absolute() / "CMakeLists.txt", listed, name, renaming)
     written = re.compile(rf"(?<=\b{package}/{folder}/){old}\b|(?<=\b{package}/){old}\b")
     for file in _texts(workspace):
         _replace_all(workspace, file, written, name, renaming)
+
+
+def _rename_package(workspace: Workspace, old: str, name: str, renaming: Renaming) -> None:
+    """Move the folder of a package, and change every place that names it."""
+    for use in workspace.all_uses():
+        word = use.span.source.text[use.span.start : use.span.end]
+        if word.startswith((f"{old}/", f"{old}::")):
+            renaming.replace(Span(use.span.source, use.span.start, use.span.start + len(old)), name)
+    written = re.compile(rf"\b{old}(?=/(?:msg|srv|action)/|/[A-Z])")
+    for file in _texts(workspace):
+        _replace_all(workspace, file, written, name, renaming)
+    in_idl = re.compile(rf"\b{old}(?=::|/)|(?<=\bmodule ){old}\b")
+    for package in workspace.packages():
+        root = package.root.absolute()
+        _replace_all(workspace, root / "package.xml", re.compile(rf"(?<=>){old}(?=</)"), name, renaming)
+        _replace_all(workspace, root / "CMakeLists.txt", re.compile(rf"\b{old}\b"), name, renaming)
+        for interface in package.files:
+            if interface.is_idl:
+                _replace_all(workspace, interface.path.absolute(), in_idl, name, renaming)
+        if package.name == old and root.name == old:
+            renaming.moves[root] = root.with_name(name)
+
+
+def _moved(package: str) -> Diagnostic:
+    """The verdict on a package with another name."""
+    message = f"every type of {package} has another name then, and another hash"
+    return Diagnostic("package-removed", message, severity="warning", breaks=("hash", "source", "wire"))
 
 
 def _replace_all(

@@ -19,7 +19,7 @@ from ifgen.formatting import formatted, has_style
 from ifgen.language_server import actions, completion, outline, rename
 from ifgen.language_server.hover import hover
 from ifgen.language_server.positions import Positions
-from ifgen.language_server.symbols import Symbol, definition_of, member_span, symbol_at
+from ifgen.language_server.symbols import Symbol, definition_of, member_span, named_at, symbol_at
 from ifgen.language_server.workspace import Workspace
 
 RULES_PAGE: Final = "https://github.com/ifgen-ros/ifgen/blob/main/docs/rules.md"
@@ -61,6 +61,13 @@ class Server(LanguageServer):
         if source is None:
             return None
         return symbol_at(self.files, source, self.positions(source).offset(position))
+
+    def named(self, uri: str, position: lsp.Position) -> Symbol | None:
+        """The symbol whose own name is at a position."""
+        source = self.source(uri)
+        if source is None:
+            return None
+        return named_at(self.files, source, self.positions(source).offset(position))
 
     @property
     def pulls(self) -> bool:
@@ -305,18 +312,16 @@ def make_server() -> Server:  # noqa: PLR0915 - one function for each request
 
     @server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)
     def prepare_rename(params: lsp.PrepareRenameParams) -> lsp.PrepareRenamePlaceholder | None:
-        symbol = server.symbol(params.text_document.uri, params.position)
+        symbol = server.named(params.text_document.uri, params.position)
         if symbol is None or not rename.can_rename(server.files, symbol):
             return None
         span = symbol.span
-        name = symbol.member or symbol.type_name.rpartition("/")[2]
-        start = span.end - len(name)
-        place = server.location(Span(span.source, start, span.end)).range
-        return lsp.PrepareRenamePlaceholder(place, name)
+        name = span.source.text[span.start : span.end]
+        return lsp.PrepareRenamePlaceholder(server.location(span).range, name)
 
     @server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
     def renamed(params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-        symbol = server.symbol(params.text_document.uri, params.position)
+        symbol = server.named(params.text_document.uri, params.position)
         if symbol is None or not rename.can_rename(server.files, symbol):
             raise JsonRpcInvalidParams("only what the workspace defines can be renamed")
         try:

@@ -17,7 +17,7 @@ from ifgen.idl.tree import DefinitionNode, FieldNode, InterfaceTree
 from ifgen.language_server.workspace import Workspace, members_of, parts_of, uses_in_document
 from ifgen.reading.package_files import node_name
 
-Kind = Literal["type", "field", "constant"]
+Kind = Literal["type", "field", "constant", "package"]
 
 _PARSERS: Final = {
     ".msg": parser.parse_message,
@@ -33,7 +33,10 @@ _PARTS: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """A name in a file. `type_name` is the type that is named, or that has the member."""
+    """A name in a file. `type_name` is the type that is named, or that has the member.
+
+    A package is named by the first part of a type.
+    """
 
     kind: Kind
     type_name: str
@@ -53,6 +56,20 @@ def symbol_at(workspace: Workspace, source: Source, offset: int) -> Symbol | Non
         if symbol.span.start <= offset <= symbol.span.end:
             return symbol
     return None
+
+
+def named_at(workspace: Workspace, source: Source, offset: int) -> Symbol | None:
+    """The symbol whose name is at a place: of `package/Type` either of the two."""
+    symbol = symbol_at(workspace, source, offset)
+    if symbol is None or symbol.kind != "type":
+        return symbol
+    word = source.text[symbol.span.start : symbol.span.end]
+    package = symbol.type_name.partition("/")[0]
+    first = symbol.span.start + len(package)
+    if word.startswith((f"{package}/", f"{package}::")) and offset <= first:
+        return Symbol("package", symbol.type_name, Span(source, symbol.span.start, first))
+    name = symbol.type_name.rpartition("/")[2]
+    return Symbol("type", symbol.type_name, Span(source, symbol.span.end - len(name), symbol.span.end))
 
 
 def symbols(workspace: Workspace, source: Source) -> Iterator[Symbol]:
