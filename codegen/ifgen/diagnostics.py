@@ -159,3 +159,18 @@ def printable(text: str) -> str:
     if text.isascii() and text.replace("\n", "").isprintable():
         return text
     return "".join(c if c == "\n" else shown_character(c) for c in text)
+
+
+def near_names(name: str, candidates: Iterable[str], *, limit: int = 1, cutoff: float = 0.6) -> list[str]:
+    """The candidates that are spelled most like `name`, at most `limit`, the nearest first."""
+    from difflib import get_close_matches  # late: only a mistake needs it
+
+    return get_close_matches(name[:80], list(candidates), limit, cutoff)
+
+
+def did_you_mean(
+    name: str, candidates: Iterable[str], *, form: str = "'{}'", limit: int = 1, cutoff: float = 0.6
+) -> str:
+    """Advice that names what is spelled like `name`, each in its `form`; empty if nothing is."""
+    near = near_names(name, candidates, limit=limit, cutoff=cutoff)
+    return f"did you mean {' or '.join(map(form.format, near))}?" if near else ""

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import Absent, ToolError, did_you_mean
+from ifgen.diagnostics import InputError
 
 if TYPE_CHECKING:
     from rclpy.node import Node
@@ -104,7 +105,6 @@ def class_with_hash(node: Node, topic: str, wanted: WireType, timeout: float = 5
 def _of_definition(name: str) -> type[Any]:
     """The class of a definition that ifgen finds. Raises ToolError if there is none."""
     from ifgen.config.settings import settle
-    from ifgen.diagnostics import InputError
     from ifgen.dynamic.making import make
     from ifgen.pipeline import lookup
     from ifgen.reading.packages import find_packages

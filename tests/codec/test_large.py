@@ -19,7 +19,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ifgen.definition.interfaces import Registry
-from ifgen.generator_py.codec.python.text import CodecText, render
+from ifgen.generator_py.codec.text import CodecText, render
 from ifgen.generator_py.names import slot_name
 from ifgen.wire import plan as planning
 from ifgen.wire.plan import Extents, plan

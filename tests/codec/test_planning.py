@@ -9,7 +9,7 @@ import ifgen
 import pytest
 from ifgen.definition.interfaces import Message, Registry
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec.python.text import render
+from ifgen.generator_py.codec.text import render
 from ifgen.generator_py.names import class_reference, slot_name
 from ifgen.wire.plan import Extents, plan
 from ifgen_runtime import codec as runtime

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from ifgen.generator_py.codec.python.body import Body, Constants
-from ifgen.generator_py.codec.python.pieces import HEADER, Piece, run_format
-from ifgen.generator_py.codec.python.statements import (
+from ifgen.generator_py.codec.body import Body, Constants
+from ifgen.generator_py.codec.reads import HEADER, Piece, run_format
+from ifgen.generator_py.codec.statements import (
     POSITION,
     Do,
     For,

@@ -8,7 +8,7 @@ from textwrap import indent
 
 from hypothesis import strategies as st
 from ifgen.generator_py.nodes.members import members_of
-from ifgen.generator_py.tests.parameter_values import accepted
+from ifgen.generator_py.tests.strategies import accepted
 from ifgen.generator_py.text import literal
 from ifgen.nodl.model import NodeDescription
 

@@ -15,7 +15,7 @@ from ifgen.definition.interfaces import Field, InterfacePackage, Message, Regist
 from ifgen.definition.types import BasicType
 from ifgen.generator_py.imports import gathered
 from ifgen.generator_py.messages.package import plan
-from ifgen.generator_py.nodes import imports as of_nodes
+from ifgen.generator_py.nodes import members as of_nodes
 from ifgen.generator_py.nodes.package import plan_nodes, plan_users_files
 from ifgen.generator_py.templates.render import OutputFile, Templates
 from ifgen.generator_py.tests import contract

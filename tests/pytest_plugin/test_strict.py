@@ -213,7 +213,7 @@ def test_setting_and_projects_without_ros(pytester: pytest.Pytester) -> None:
 
 DIFFERING = """
 import pytest
-from ifgen_runtime.mismatch.limits import WarningLimit
+from ifgen_runtime.mismatch.reporting import WarningLimit
 from ifgen_runtime.mismatch.reporting import Mismatch, Side, report
 
 

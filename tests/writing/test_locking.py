@@ -13,7 +13,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from ifgen.writing import locking, transaction, write
+from ifgen.writing import transaction, write
 from ifgen.writing.write import OutputPackage
 
 fcntl = pytest.importorskip("fcntl", reason="the locks of another system are made of this one's")
@@ -69,19 +69,19 @@ def test_runs_take_turns(system: Fake, tmp_path: Path, monkeypatch: pytest.Monke
 
     def second() -> None:
         inside.wait()
-        with locking.exclusive(out / ".." / "out") as alone:
+        with transaction.exclusive(out / ".." / "out") as alone:
             order.append(f"second {alone}")
 
     thread = threading.Thread(target=second)
     thread.start()
-    with locking.exclusive(out) as alone:
+    with transaction.exclusive(out) as alone:
         inside.set()
         thread.join(0.1)
         order.append(f"first {alone}")
     thread.join(10)
     assert order == ["first False", "second False"]
     assert list(out.iterdir()) == [], "nothing is left in a folder that is committed"
-    assert not locking.is_free(out)
+    assert not transaction.is_free(out)
 
 
 def test_a_run_that_fails_does_not_take_the_folder_from_one_that_waits(tmp_path: Path) -> None:
@@ -130,5 +130,5 @@ def test_no_lock_and_no_place_for_one_stops_nobody(tmp_path: Path, monkeypatch: 
     for system in (nowhere, on_windows):
         with monkeypatch.context() as patched:
             system(patched)
-            with locking.exclusive(tmp_path) as alone:
+            with transaction.exclusive(tmp_path) as alone:
                 assert not alone

@@ -13,6 +13,7 @@ import click
 from ifgen.command_kit import terminal
 from ifgen.command_kit.options import OUTPUT_FOLDER
 from ifgen.diagnostics import Diagnostic, InputError, UsageError, shown_path
+from ifgen.signals import sigterm_raises
 
 # Late imports: each command loads what it needs, so that the others start fast.
 
@@ -137,7 +138,6 @@ def new(name: str, folder: Path | None, original: str | None) -> int:
         message = f"{shown_path(root)} is there already"
         raise UsageError([Diagnostic("foreign-file", message, help="choose another name, or another --in")])
     from ifgen import resources
-    from ifgen.signals import sigterm_raises
     from ifgen.writing import transaction
 
     module = name.replace("-", "_")

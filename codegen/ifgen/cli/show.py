@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import click
@@ -33,8 +34,6 @@ def show(type_: str, include: tuple[Path, ...], as_json: bool) -> int:
         return 0
     described, registry = lookup.find_type(type_, search)
     if as_json:
-        import json
-
         from ifgen.definition.type_description import describe
 
         print(json.dumps(describe(described, registry), indent=2))

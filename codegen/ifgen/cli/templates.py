@@ -12,6 +12,7 @@ import click
 
 from ifgen.command_kit import completion, terminal
 from ifgen.command_kit.options import FOLDER, OUTPUT_FOLDER, format_option, include_option
+from ifgen.config.customization import Customization
 from ifgen.config.settings import settle
 from ifgen.diagnostics import Diagnostic, UsageError, shown_path
 from ifgen.signals import sigterm_raises
@@ -59,7 +60,6 @@ def export(name: str, folder: Path | None, extend: bool) -> int:
     NAME is a template, a folder of templates, or `all`; DIR is the folder for yours. The originals are kept
     in its folder .ifgen-exported. Commit that as well: `ifgen templates diff` needs it.
     """
-    from ifgen.config.customization import Customization
     from ifgen.generator_py.templates import exports
     from ifgen.generator_py.templates.catalogue import listed
 

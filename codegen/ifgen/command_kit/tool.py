@@ -7,6 +7,8 @@ from typing import Any, Final
 
 import click
 
+from ifgen import diagnostics
+
 _SIGINT: Final = 2
 _SIGTERM: Final = 15
 
@@ -28,10 +30,7 @@ class Absent(ToolError):
 
 def did_you_mean(name: str, candidates: Iterable[str], *, limit: int = 3, cutoff: float = 0.5) -> str:
     """Advice that names what is spelled like `name`; empty if nothing is."""
-    from difflib import get_close_matches  # only a mistake needs it
-
-    near = get_close_matches(name, list(candidates), n=limit, cutoff=cutoff)
-    return f"did you mean {' or '.join(map(repr, near))}?" if near else ""
+    return diagnostics.did_you_mean(name, candidates, limit=limit, cutoff=cutoff)
 
 
 class ToolCommand(click.Command):

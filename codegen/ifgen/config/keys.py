@@ -9,6 +9,8 @@ from dataclasses import field, fields
 from pathlib import Path
 from typing import Any, Final, NamedTuple, cast
 
+from ifgen.diagnostics import did_you_mean
+
 _KIND: Final = "kind"
 _DEFAULT: Final = "default"
 
@@ -79,10 +81,7 @@ def mistakes(cls: type, table: object, shown: str, path: tuple[str, ...] = ()) -
             article = "an" if name[0] in "aeiou" else "a"
             yield Mistake((*path, name), f"[{shown}] needs {article} '{name}'", f"'{name}' is missing")
     for name in (name for name in values if name not in keys):
-        from difflib import get_close_matches  # of use only where something is wrong
-
-        close = get_close_matches(name, keys, n=1)
-        advice = f"did you mean '{close[0]}'?" if close else f"the keys are {', '.join(keys)}"
+        advice = did_you_mean(name, keys) or f"the keys are {', '.join(keys)}"
         yield Mistake((*path, name), f"[{shown}] has no key '{name}'", "unknown key", advice)
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import lru_cache
 from typing import Final
 
 from ifgen import resources
-from ifgen.diagnostics import Severity
+from ifgen.diagnostics import Severity, did_you_mean
 
 _HEADING: Final = re.compile(r"^## (?P<section>.*)$|^### `(?P<rule>.*)`$", re.MULTILINE)
 _CHANGES: Final = "Breaking changes"
@@ -67,8 +66,7 @@ def is_of_changes(name: str) -> bool:
 
 def meant(name: str) -> str | None:
     """A hint at the rules that somebody may have meant."""
-    close = get_close_matches(name, rules(), n=2)
-    return f"did you mean {' or '.join(f'`{other}`' for other in close)}?" if close else None
+    return did_you_mean(name, rules(), form="`{}`", limit=2) or None
 
 
 def why_not_ignored(name: str) -> tuple[str, str | None] | None:

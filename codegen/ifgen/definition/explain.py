@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable
 from typing import Final
 
+from ifgen import diagnostics
 from ifgen.definition import rules
 from ifgen.definition.literals import BadValue
 from ifgen.definition.names import is_constant_name, is_field_name, snake_case
@@ -160,5 +160,4 @@ def bad_value(error: BadValue, type_text: str | None, span: Span) -> Diagnostic:
 
 def did_you_mean(name: str, known: Iterable[str]) -> str | None:
     """A hint at the known names that look most alike."""
-    matches = difflib.get_close_matches(name[:80], list(known), n=3, cutoff=0.6)
-    return f"did you mean {' or '.join(f'`{match}`' for match in matches)}?" if matches else None
+    return diagnostics.did_you_mean(name, known, form="`{}`", limit=3) or None

@@ -17,8 +17,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from ifgen.diagnostics import InputError
-from ifgen.dynamic.descriptions import DescribeError, TypeDescription, class_of
-from ifgen.dynamic.texts import class_from_text
+from ifgen.dynamic.texts import DescribeError, TypeDescription, class_from_text, class_of
 
 if TYPE_CHECKING:
     from ifgen_tools.type_descriptions import describe, describe_action, describe_service

@@ -13,7 +13,8 @@ import gc
 import hashlib
 from collections.abc import Generator, Iterable, Mapping
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
+from importlib import import_module
 from threading import RLock
 from types import SimpleNamespace
 from typing import Any, Final, get_type_hints
@@ -22,11 +23,88 @@ from ifgen.definition.interfaces import Action, Message, Registry
 from ifgen.definition.references import references
 from ifgen.definition.type_description import Described
 from ifgen.diagnostics import Diagnostic, InputError
-from ifgen.dynamic import codecs
-from ifgen.dynamic.codecs import FactsWithoutCodecs
+from ifgen.generator_py.codec.text import CodecText, render
+from ifgen.generator_py.messages.classes import Facts
 from ifgen.generator_py.messages.package import plan_alone
-from ifgen.generator_py.names import module_name
+from ifgen.generator_py.names import class_reference, module_name, slot_name
 from ifgen.generator_py.templates.render import Templates
+from ifgen.wire.plan import plan
+
+_RUNTIME: Final = "ifgen_runtime.codec"
+_NONE: Final = CodecText((), (), (), "", "", "pass")
+_METHODS: Final = ("__serialize__", "__deserialize__", "__codec__")
+_PARTS: Final = ("__write__", "__read__")
+"""The functions that only large messages have, for the codecs of messages that contain them."""
+
+_codec_lock: Final = RLock()
+
+
+class FactsWithoutCodecs(Facts):
+    """The facts for modules of classes whose codecs come later."""
+
+    def codec(self, message: Message) -> CodecText:
+        """A statement that does nothing."""
+        return _NONE
+
+
+class _Later:
+    """An attribute of a class that makes the codec when somebody reads it."""
+
+    def __init__(self, name: str, attach: Any) -> None:
+        self._name = name
+        self._attach = attach
+
+    def __get__(self, message: object, owner: type[Any]) -> Any:
+        self._attach()
+        return getattr(owner if message is None else message, self._name)
+
+
+def attach_later(
+    cls: Any,
+    nested: tuple[type[Any], ...],
+    module: dict[str, Any],
+    message: Message,
+    facts: Facts,
+    made: Mapping[str, type[Any]],
+) -> None:
+    """Let a class get its codec when that is first used; `nested` are the classes of its fields.
+
+    `made` are the classes of all types that it refers to, by type name.
+    """
+    cls.__nested__ = nested
+    attach = partial(_attach, cls, module, message, facts, made)
+    is_large = facts.extents.of(message).is_large
+    for name in (*_METHODS, *(_PARTS if is_large else ())):
+        setattr(cls, name, _Later(name, attach))
+
+
+def _is_later(cls: type[Any], name: str) -> bool:
+    return isinstance(vars(cls).get(name), _Later)
+
+
+def _attach(
+    cls: type[Any], module: dict[str, Any], message: Message, facts: Facts, made: Mapping[str, type[Any]]
+) -> None:
+    """Execute the text of the codec in the module of the class."""
+    with _codec_lock:
+        if not _is_later(cls, "__serialize__"):
+            return  # another thread was first
+        codec = render(plan(message, facts.extents, slot_name))
+        for type_ in codec.class_types:
+            nested = made[type_.type_name]
+            module[class_reference(type_, message)] = nested
+            if _is_later(nested, "__write__"):
+                nested.__write__  # noqa: B018 - large ones are called, and have to be complete
+        runtime = import_module(_RUNTIME)
+        module.update({name: getattr(runtime, name) for name in codec.runtime_imports})
+        text = "\n".join((*codec.constants, codec.serialize, codec.deserialize, codec.attachment))
+        code = compile(text, f"<ifgen.dynamic codec of {message.type_name}>", "exec", dont_inherit=True)
+        for name in (*_METHODS, *_PARTS):
+            if _is_later(cls, name):
+                delattr(cls, name)
+        exec(code, module)
+        import_module("ifgen_runtime.codec.choice").attached(cls)
+
 
 _PACKAGES: Final = "__ifgen_packages__"
 """The name in a module of the classes that it imports, by `package.folder`."""
@@ -96,7 +174,7 @@ class _Making:
         cls: type[Any] = module[described.name]
         if isinstance(described, Message):
             nested = tuple(self._made[type_.type_name] for _, type_ in references(described))
-            codecs.attach_later(cls, nested, module, described, self._facts, self._made)
+            attach_later(cls, nested, module, described, self._facts, self._made)
         definition = (described, *needed)
         copyreg.pickle(type(cls), lambda _: (_restored, (described.type_name, definition)))
         return cls

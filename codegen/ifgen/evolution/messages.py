@@ -210,7 +210,7 @@ def _enumerations(within: Versions, own: Iterable[MessageEdit]) -> Iterator[edit
 def _members(message: Message) -> Mapping[str, tuple[Constant, ...]]:
     """The constants of each enumeration, by the name of its field."""
     # Few messages have any, and the generator loads slowly.
-    from ifgen.generator_py.messages.enums import enums, values
+    from ifgen.generator_py.messages.context import enums, values
     from ifgen.generator_py.names import enum_name
 
     names = {enum.name for enum in enums(message)}

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from pathlib import Path
 
 from ifgen.config.settings import settle
 from ifgen.definition.interfaces import Registry
 from ifgen.definition.resolve import resolve, resolve_what_can_be
 from ifgen.definition.type_description import Described, described_types, messages_of
-from ifgen.diagnostics import Diagnostic, UsageError
+from ifgen.diagnostics import Diagnostic, UsageError, did_you_mean, near_names
 from ifgen.reading.packages import FOLDERS, InterfaceFile, PackageFiles, find_packages
 from ifgen.reading.search_path import SearchPath
 
@@ -157,7 +156,7 @@ def _everywhere(name: str, search: SearchPath) -> _Match:
         return _Match(name, package, (file,), None if file.name == name else name)
     if named:
         raise UsageError([_ambiguous(name, [type_name for type_name, _, _ in named])])
-    close = set(get_close_matches(name, {file.name for _, _, file in found}, n=1))
+    close = near_names(name, {file.name for _, _, file in found})
     known = [type_name for type_name, _, file in found if file.name in close]
     advice = f"did you mean {' or '.join(map(repr, known))}?" if known else "write it as `package/msg/Name`"
     raise UsageError([Diagnostic("unknown-type", f"there is no type '{name}'", help=advice)])
@@ -181,7 +180,7 @@ def _ambiguous(name: str, known: Sequence[str]) -> Diagnostic:
 def _unknown_package(name: str, search: SearchPath) -> Diagnostic:
     package, slash, rest = name.partition("/")
     message = f"there is no interface package '{package}'"
-    close = get_close_matches(package, search.package_names(), n=1)
+    close = near_names(package, search.package_names())
     hint = ""
     if close:
         found = search.package(close[0])
@@ -193,7 +192,5 @@ def _unknown_package(name: str, search: SearchPath) -> Diagnostic:
 
 
 def _unknown_type(name: str, known: list[str]) -> Diagnostic:
-    close = get_close_matches(name, known, n=3)
-    package = name.partition("/")[0]
-    advice = f"did you mean {' or '.join(map(repr, close))}?" if close else f"see `ifgen hash {package}`"
+    advice = did_you_mean(name, known, limit=3) or f"see `ifgen hash {name.partition('/')[0]}`"
     return Diagnostic("unknown-type", f"there is no type '{name}'", help=advice)

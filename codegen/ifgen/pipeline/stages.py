@@ -13,7 +13,7 @@ from ifgen import resources
 from ifgen.config.customization import Customization
 from ifgen.definition.interfaces import Registry
 from ifgen.diagnostics import Diagnostic, UsageError
-from ifgen.pipeline import output_diagnostics, previous_output
+from ifgen.pipeline import previous_output
 from ifgen.pipeline.cache.fresh import UpToDate, unless_up_to_date
 from ifgen.pipeline.values import BuildResult, Condition, LeftOut, Progress, Request
 from ifgen.reading.packages import find_packages
@@ -175,7 +175,7 @@ def _read(  # noqa: PLR0913 - the options of the functions above
 
         packages, excluded = without_excluded(packages, exclude)
     if problems := [
-        output_diagnostics.into_its_source(package)
+        previous_output.into_its_source(package)
         for package in packages
         if (output / package.name).resolve() == package.root.resolve()
     ]:
@@ -239,8 +239,8 @@ class _Change:
 
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """The diagnostics of the run, and about the output after it."""
-        left_behind = map(output_diagnostics.left_behind, sorted(self._left_behind))
-        missing = output_diagnostics.missing_packages(self.result.needed, self._request, self._removed)
+        left_behind = map(previous_output.left_behind, sorted(self._left_behind))
+        missing = previous_output.missing_packages(self.result.needed, self._request, self._removed)
         return (*self.result.diagnostics, *left_behind, *missing)
 
     def _by_folder(self, paths: Iterable[Path]) -> dict[Path, list[Path]]:
@@ -264,14 +264,14 @@ class _Change:
         overwritten = [
             diagnostic
             for folder, paths in self._by_folder(written.edited).items()
-            for diagnostic in output_diagnostics.overwritten(paths, folder)
+            for diagnostic in previous_output.overwritten(paths, folder)
         ]
         return Generated(
             written.written,
             tuple(sorted((*written.unchanged, *skipped, *of_targets))),
             written.removed,
             written.kept,
-            (*map(output_diagnostics.edited, written.kept), *overwritten, *self.diagnostics()),
+            (*map(previous_output.edited, written.kept), *overwritten, *self.diagnostics()),
             self.result.left_out,
         )
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from ifgen.diagnostics import Diagnostic, Label, Source, Span, shorten
+from ifgen.diagnostics import Diagnostic, Label, Source, Span, did_you_mean, shorten
 from ifgen.reading import storage
 
 if TYPE_CHECKING:
@@ -97,5 +96,4 @@ def _near(path: Path) -> str | None:
         names = [entry.name for entry in storage.entries(path.parent) if entry.name.endswith(EXTENSIONS)]
     except (OSError, ValueError):
         return None
-    close = get_close_matches(path.name, names, n=1)
-    return f"did you mean {close[0]}?" if close else None
+    return did_you_mean(path.name, names, form="{}") or None

@@ -17,7 +17,7 @@ from contextvars import ContextVar
 from pathlib import Path
 from typing import Any, Final, NamedTuple, Protocol
 
-from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, shown_path
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, near_names, shown_path
 
 MAX_SIZE: Final = 4 * 2**20
 """Bytes of a file that somebody may have written: a hundred times what the largest interface has."""
@@ -258,9 +258,7 @@ def near_paths(path: str | Path) -> list[str]:
         names = [] if os.path.lexists(missing) else [entry.name for entry in missing.parent.iterdir()]
     except (OSError, ValueError):
         return []
-    from difflib import get_close_matches  # of use only where something is wrong
-
-    return [str(missing.with_name(name)) for name in get_close_matches(missing.name, names, n=3)]
+    return [str(missing.with_name(name)) for name in near_names(missing.name, names, limit=3)]
 
 
 def _missing(path: Path) -> OSError:

@@ -10,7 +10,7 @@ messages, and those in arrays and sequences, keep instructions of their own (`Ca
 
 The instructions are a closed sum, and each rendering matches all of them:
 
-* Python text, in `generator_py/codec/python`: two straight-line functions.
+* Python text, in `generator_py/codec`: two straight-line functions.
 * The steps of `ifgen.model`, which generators of other languages read.
 * A table for the codec in C, in `generator_py/codec/table.py`: one row for each instruction and each item of
   a run. `Enter` stores a message under its number. A `Run` begins with the number of its rows, so that one

@@ -1,8 +1,12 @@
-"""Changes many files of a folder together: all of it, or none of it."""
+"""Changes many files of a folder together, or none of them, one run at a time.
+
+The system takes back the lock on a folder however its holder ends.
+"""
 
 from __future__ import annotations
 
 import errno
+import hashlib
 import os
 import shutil
 import tempfile
@@ -10,10 +14,100 @@ import time
 from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
+from importlib import import_module
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
-from ifgen.writing import locking
+from ifgen import resources
+
+_POLL = 0.05
+"""Seconds between two looks at a lock that Windows cannot wait for."""
+
+
+@contextmanager
+def exclusive(folder: Path) -> Generator[bool]:
+    """Wait until no other run has a folder that exists; whether no other one has it for certain.
+
+    Where folders cannot be locked (Windows, some network drives), a file in the user's cache stands for the
+    folder: runs of other users and on other machines do not see that one.
+    """
+    with _folder_locked(folder) as locked:
+        if locked:
+            yield True
+        else:
+            with _file_locked(folder):
+                yield False
+
+
+def is_free(folder: Path) -> bool:
+    """True if it is certain that no run is at work on a folder."""
+    with suppress(ImportError, OSError):
+        import fcntl  # not on Windows
+
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+            return True
+        finally:
+            os.close(descriptor)
+    return False
+
+
+@contextmanager
+def _folder_locked(folder: Path) -> Generator[bool]:
+    try:
+        import fcntl  # not on Windows
+    except ImportError:
+        yield False
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        locked = False
+        with suppress(OSError):
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            locked = True
+        yield locked
+    finally:
+        os.close(descriptor)
+
+
+@contextmanager
+def _file_locked(folder: Path) -> Generator[None]:
+    """The same by a file; without any lock where there is no place for it."""
+    name = hashlib.sha256(os.path.normcase(folder.resolve()).encode(errors="surrogateescape")).hexdigest()
+    with ExitStack() as held:
+        with suppress(OSError):
+            path = resources.cache_folder() / "locks" / name[:32]
+            path.parent.mkdir(parents=True, exist_ok=True)
+            descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+            held.callback(os.close, descriptor)
+            held.callback(_lock_file(descriptor))
+        yield
+
+
+def _lock_file(descriptor: int) -> Callable[[], object]:
+    """Wait for a lock on a file; what unlocks it. Raises OSError where it cannot be had."""
+    try:
+        import fcntl  # not on Windows
+    except ImportError:
+        return _lock_on_windows(descriptor)
+    fcntl.flock(descriptor, fcntl.LOCK_EX)
+    return partial(fcntl.flock, descriptor, fcntl.LOCK_UN)
+
+
+def _lock_on_windows(descriptor: int) -> Callable[[], object]:
+    try:
+        msvcrt: Any = import_module("msvcrt")  # which checkers know on Windows only
+    except ImportError as error:
+        raise OSError("this system has no locks") from error
+    while True:
+        try:
+            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+        except PermissionError:  # another run has it; LK_LOCK would give up after ten seconds
+            time.sleep(_POLL)
+        else:
+            return partial(msvcrt.locking, descriptor, msvcrt.LK_UNLCK, 1)
+
 
 Change: TypeAlias = tuple[Path, bytes | None]
 """A file and its new content; None removes it."""
@@ -136,7 +230,7 @@ def _entered(directory: Path, held: ExitStack) -> bool:
     made = [folder for folder in (directory, *directory.parents) if not folder.exists()]
     directory.mkdir(parents=True, exist_ok=True)
     before = directory.stat()
-    alone = held.enter_context(locking.exclusive(directory))
+    alone = held.enter_context(exclusive(directory))
     held.callback(_remove_empty, made)  # while it is locked, so that nobody has begun to work in it
     if not os.path.samestat(before, directory.stat()):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(directory))

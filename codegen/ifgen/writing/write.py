@@ -18,7 +18,7 @@ from ifgen.diagnostics import Diagnostic, InputError, shown_path
 from ifgen.reading import manifest
 from ifgen.reading.manifest import Manifest
 from ifgen.reading.storage import MAX_GENERATED, read_limited
-from ifgen.writing import locking, transaction
+from ifgen.writing import transaction
 
 ROOT = "."
 """The package that stands for the output folder itself."""
@@ -182,7 +182,7 @@ def drift(
             drifts.extend(Drift(path, _text(path), data.decode(errors="replace")) for path, data in changed)
             drifts.extend(Drift(path, _text(path), None) for path in (*plan.stale, *plan.kept))
         if folder.is_dir():
-            left_over = transaction.left_over(folder, alone=locking.is_free(folder))
+            left_over = transaction.left_over(folder, alone=transaction.is_free(folder))
             drifts.extend(Drift(path, "", None) for path in left_over)
     if targets:
         _refuse_same_paths(folders)

@@ -49,9 +49,9 @@ if TYPE_CHECKING:
     from ifgen_runtime.bag.errors import BagError as BagError
     from ifgen_runtime.bag.errors import BagWarning as BagWarning
     from ifgen_runtime.bag.errors import Damage as Damage
-    from ifgen_runtime.bag.messages import Messages as Messages
     from ifgen_runtime.bag.qos import OfferedQoS as OfferedQoS
     from ifgen_runtime.bag.reader import Bag as Bag
+    from ifgen_runtime.bag.reader import Messages as Messages
     from ifgen_runtime.bag.recorder import Recorder as Recorder
     from ifgen_runtime.bag.topics import Definition as Definition
     from ifgen_runtime.bag.topics import Recorded as Recorded

@@ -15,8 +15,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any, Final, Protocol, TypeAlias
 
 from ifgen_runtime.convert import to_dict
-from ifgen_runtime.mismatch.limits import Lru, SeenSet
-from ifgen_runtime.mismatch.reporting import Definition
+from ifgen_runtime.mismatch.reporting import Definition, Lru, SeenSet
 from ifgen_runtime.type_description import hash_of
 
 if TYPE_CHECKING:

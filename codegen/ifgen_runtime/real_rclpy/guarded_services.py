@@ -10,11 +10,10 @@ import itertools
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
-from ifgen_runtime.mismatch.limits import Lru
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.real_rclpy.carriers import carrier_of, decoded, encoded
+from ifgen_runtime.mismatch.reporting import Lru
+from ifgen_runtime.real_rclpy.carriers import Client, Service, carrier_of, decoded, encoded
 from ifgen_runtime.real_rclpy.endpoints import Part, parts_of
-from ifgen_runtime.real_rclpy.handles import Client, Service
 from ifgen_runtime.real_rclpy.peers import Others, Peer, applied
 
 

@@ -15,11 +15,10 @@ from rclpy import subscription as subscriptions
 
 from ifgen_runtime.adapters import short
 from ifgen_runtime.checks.ranges import look_at
-from ifgen_runtime.mismatch.limits import SeenSet
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.real_rclpy.carriers import decoded
+from ifgen_runtime.mismatch.reporting import SeenSet
+from ifgen_runtime.real_rclpy.carriers import Publisher, Subscription, decoded
 from ifgen_runtime.real_rclpy.endpoints import Part, parts_of
-from ifgen_runtime.real_rclpy.handles import Publisher, Subscription
 from ifgen_runtime.real_rclpy.peers import Others, Peer, applied, differs
 
 _GID: Final = "publisher_gid"

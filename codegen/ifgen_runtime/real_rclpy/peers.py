@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from ifgen_runtime.adapters import adapter_for
-from ifgen_runtime.mismatch.limits import Lru
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
+from ifgen_runtime.mismatch.reporting import Lru
 from ifgen_runtime.real_rclpy.endpoints import Part
 
 _UNKNOWN: Final = "_NODE_NAME_UNKNOWN_"

@@ -14,9 +14,18 @@ from typing import Any, Final
 from rclpy.logging import get_logger
 
 from ifgen_runtime.field_types import type_name
-from ifgen_runtime.mismatch.limits import SeenSet, WarningLimit
 from ifgen_runtime.mismatch.policy import OnTypeMismatch
-from ifgen_runtime.mismatch.reporting import Definition, Mismatch, Side, definition_of, in_one_line, report
+from ifgen_runtime.mismatch.reporting import (
+    Definition,
+    Mismatch,
+    SeenSet,
+    Side,
+    WarningLimit,
+    definition_of,
+    in_one_line,
+    left_over,
+    report,
+)
 from ifgen_runtime.mismatch.type_description_client import Definitions, Question, node_connection
 from ifgen_runtime.real_rclpy import register
 from ifgen_runtime.real_rclpy.endpoints import Endpoint, Part
@@ -183,9 +192,7 @@ class UnreadableBytes:
                 messages = "a message" if dropped == 1 else f"{dropped} messages"
                 self._say(endpoint, f"{messages} of {of} did not fit {type_name(cls)}, and were dropped")
             if with_rest:
-                number = "1 byte" if rest == 1 else f"{rest} bytes"
-                text = f"{number} of a message of {of} were left over after {type_name(cls)}"
-                self._say(endpoint, f"{text}. The message was delivered", "rest")
+                self._say(endpoint, left_over(rest, of, type_name(cls)), "rest")
 
     def _say(self, endpoint: Endpoint, text: str, kind: str = "dropped") -> None:
         node = endpoint.node

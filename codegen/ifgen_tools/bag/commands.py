@@ -313,7 +313,7 @@ def info(chosen: InfoOptions) -> int:
 @takes(ConvertOptions)
 def convert(chosen: ConvertOptions) -> int:
     """Write a bag in another format: MCAP or SQLite, a folder or a file, compressed or not."""
-    from ifgen_tools.bag.copy import convert as run
+    from ifgen_tools.bag.files import convert as run
 
     return run(chosen)
 
@@ -330,7 +330,7 @@ def convert(chosen: ConvertOptions) -> int:
 @takes(CutOptions)
 def cut(chosen: CutOptions) -> int:
     """Write a part of a bag: a range of time, or some topics. Messages stay as they are."""
-    from ifgen_tools.bag.copy import cut as run
+    from ifgen_tools.bag.files import cut as run
 
     return run(chosen)
 

@@ -1,4 +1,4 @@
-"""Bags on the disk as commands open and write them, and what they say about them.
+"""Bags on the disk: opened, written, and copied as they are or converted, for `bag convert` and `bag cut`.
 
 A bag may have put anything into a text: nothing in it steers a terminal.
 """
@@ -10,16 +10,136 @@ import os
 import shutil
 import sys
 import warnings
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from ifgen.command_kit.tool import ToolError
 from ifgen.diagnostics import printable
+from ifgen_runtime.bag.writer import BagWriter, Format, Limits, storage_of
+
+from ifgen_tools.bag.options import ConvertOptions, CutOptions, Selection
 
 if TYPE_CHECKING:
     from ifgen_runtime.bag import Bag
+    from ifgen_runtime.bag.topics import Channel, Definition
+
+
+_S: Final = 10**9
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """The channel that messages are copied to, and what converts their bytes, if anything does."""
+
+    channel: Channel
+    convert: Callable[[bytes], bytes] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """The part to copy: topics, received from `start` to before `end` [ns]; None is no limit."""
+
+    choice: Selection
+    start: int | None = None
+    end: int | None = None
+
+
+EVERYTHING: Final = Selection(all_topics=True, all_services=True, include_hidden=True)
+
+
+def write_part(
+    bag: Bag,
+    output: Path,
+    format: Format,
+    part: Part,
+    passage: Callable[[Channel], Passage],
+    limits: Limits | None = None,
+) -> int:
+    """Write a part of a bag to a new place, all of it or nothing; returns how many messages that are."""
+    is_folder = storage_of(output) is None
+    if not is_folder and format.outer:
+        raise ToolError(
+            f"{output} is a single file, and cannot be compressed as a whole", help="name a folder"
+        )
+    chosen = [topic.name for topic in bag.topics.values() if part.choice.takes(topic.name, topic.type_name)]
+    if not chosen:
+        raise ToolError(f"nothing of {bag.path} is chosen", help="`ifgen bag info` shows its topics")
+    if bag.attachments:
+        warn(f"{bag.attachments:,} attachments of {bag.path} are not copied")
+    with (
+        whole(output) as place,
+        BagWriter(place, format, is_folder, limits or Limits(), name=output.name) as writer,
+    ):
+        _copy(bag, writer, part, chosen, passage)
+    return writer.count
+
+
+def _copy(
+    bag: Bag, writer: BagWriter, part: Part, topics: list[str], passage: Callable[[Channel], Passage]
+) -> None:
+    passages: dict[tuple[str, Definition], Passage] = {}
+    by_channel: dict[Channel, Passage] = {}
+    for channel in bag.channels:
+        if channel.topic in topics:
+            key = channel.topic, channel.definition
+            if key not in passages:
+                passages[key] = passage(channel)
+                writer.add(passages[key].channel)
+            by_channel[channel] = passages[key]
+    for received, published, channel, data in bag.entries(*topics, start=part.start, end=part.end):
+        target = by_channel[channel]
+        if target.convert is not None:
+            data = _converted(data, target.convert, channel.topic)  # noqa: PLW2901 - the same message
+        writer.write(target.channel, received, published, data)
+
+
+def _converted(data: bytes, convert: Callable[[bytes], bytes], topic: str) -> bytes:
+    try:
+        return convert(data)
+    except Exception as error:  # of an adapter, which is code of users, or of bytes that are no message
+        raise ToolError(
+            f"a message of {topic} cannot be converted: {type(error).__name__}: {error}",
+            help="nothing was written. Mend the adapter, or leave the topic out with `ifgen bag cut`",
+        ) from None
+
+
+def convert(options: ConvertOptions) -> int:
+    """Write a bag in another format."""
+    output, format = options.require_output(), options.file_format()
+    with reading(options.bag_path, unlimited=options.unlimited) as bag:
+        count = write_part(bag, output, format, Part(EVERYTHING), Passage, Limits(options.max_bag_size))
+    show(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
+    return 0
+
+
+def cut(options: CutOptions) -> int:
+    """Write a part of a bag."""
+    output, format = options.require_output(), options.file_format()
+    with reading(options.bag_path, unlimited=options.unlimited) as bag:
+        start, end = _time(bag, options.start, "--start"), _time(bag, options.end, "--end")
+        count = write_part(bag, output, format, Part(options.of_bag(), start, end), Passage)
+    show(f"wrote {output}: {count:,} message{'s' * (count != 1)}")
+    return 0
+
+
+def _time(bag: Bag, text: str, option: str) -> int | None:
+    """The time [ns] of a text: seconds from the start, from the end if negative, or `@` since 1970."""
+    if not text:
+        return None
+    try:
+        seconds = float(text.removeprefix("@"))
+        nanoseconds = round(seconds * _S)
+    except (ValueError, OverflowError):
+        help = "write seconds from the start (12.5), from the end (-3), or since 1970 (@1718006400.5)"
+        raise ToolError(f"{option} {text!r} is no time", help=help) from None
+    if text.startswith("@"):
+        return nanoseconds
+    base = bag.end if text.startswith("-") else bag.start
+    return (base or 0) + nanoseconds
+
 
 # Late imports: most verbs of the command line read no bag.
 

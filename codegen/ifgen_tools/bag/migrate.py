@@ -29,8 +29,7 @@ from ifgen_tools.bag.check import (
     installed_definition,
     named_definition,
 )
-from ifgen_tools.bag.copy import EVERYTHING, Part, Passage, write_part
-from ifgen_tools.bag.files import reading, show
+from ifgen_tools.bag.files import EVERYTHING, Part, Passage, reading, show, write_part
 
 if TYPE_CHECKING:
     from ifgen_runtime.bag import Bag

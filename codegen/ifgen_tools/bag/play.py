@@ -12,7 +12,7 @@ from ifgen_tools.bag.files import reading, say, warn
 from ifgen_tools.bag.keys import DOWN, RIGHT, SPACE, UP, keyboard
 from ifgen_tools.bag.options import PlayOptions, is_service_event
 from ifgen_tools.bag.player import PlayClock, Player, Range, part
-from ifgen_tools.bag.requests import Requester, requester, wait_for_answers, wait_for_servers
+from ifgen_tools.bag.services import Requester, requester, wait_for_answers, wait_for_servers
 from ifgen_tools.session import Session, open_session
 
 if TYPE_CHECKING:

@@ -130,8 +130,7 @@ def _format_of(output: Path | None) -> Format:
 
 
 def _drawn(found: Graph, format_: Format) -> str:
-    from ifgen_tools.graph.svg import svg
-    from ifgen_tools.graph.text import dot, mermaid
+    from ifgen_tools.graph.svg import dot, mermaid, svg
 
     return {"mermaid": mermaid, "dot": dot, "svg": svg}[format_](found)
 

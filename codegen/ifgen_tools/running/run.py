@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import _thread
 import contextlib
 import os
 import re
 import sys
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
+from functools import partial
+from io import TextIOWrapper
 from itertools import pairwise
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from ifgen.activation import ActivationError, folder_around, is_node_package, put_on_path
 from ifgen.command_kit.tool import did_you_mean
@@ -18,9 +21,9 @@ from ifgen.diagnostics import Diagnostic, UsageError
 from ifgen.reading.listed_file import EXTENSIONS
 from ifgen.reading.storage import near_paths
 
-from ifgen_tools.running import alone, elsewhere, lockstep, processes
-from ifgen_tools.running.ending import tell
-from ifgen_tools.running.program import find
+from ifgen_tools.running import elsewhere, processes
+from ifgen_tools.running.ending import INTERRUPTED, exit_code, is_interruption, tell
+from ifgen_tools.running.program import Program, find
 
 SEPARATOR = ":"
 
@@ -126,11 +129,11 @@ def run(
         tell(error.with_traceback(None))
         return 1
     if in_lockstep:
-        return lockstep.run(programs)
+        return _run_in_lockstep(programs)
     if tells:
         elsewhere.tell(chosen)
     if len(programs) == 1:
-        return alone.run(programs[0])
+        return _run_alone(programs[0])
     named = [(program.name, words) for program, words in zip(programs, command_lines, strict=True)]
     return processes.run(named, chosen)
 
@@ -169,3 +172,83 @@ def stdout_to_stderr() -> Generator[None]:
         sys.stdout.flush()
         os.dup2(stdout, 1)
         os.close(stdout)
+
+
+def _run_in_lockstep(programs: Sequence[Program]) -> int:
+    """Run programs on the local transport until the last one ends; returns the exit code of what fails."""
+    from rmw_local import lockstep  # late: it is found once the transport has been chosen
+
+    calls = [partial(_execute, program) for program in programs]
+    try:
+        lockstep.run(*calls, names=[program.name for program in programs])
+    except lockstep.LockstepError as error:
+        print(f"ifgen: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return 0
+
+
+def _execute(program: Program) -> None:
+    """Run a program in the process that is there for it."""
+    try:
+        program.execute()
+    except Exception as error:
+        if is_interruption(error):
+            raise
+        tell(error)
+        raise SystemExit(1) from error
+
+
+def _run_alone(program: Program) -> int:
+    """Run a program to its end; returns its exit code. What it leaves running ends with this process."""
+    note = processes.take_note()
+    ending: BaseException | None = None
+    report = sys.unraisablehook
+    sys.unraisablehook = partial(_hear_again, report)
+    try:
+        if note is not None:
+            processes.let_signals_come()
+            _write_whole_lines()
+        program.execute()
+    except BaseException as error:
+        ending = error
+    finally:
+        if getattr(sys.unraisablehook, "func", None) is _hear_again:  # else the program has its own
+            sys.unraisablehook = report
+
+    def is_dismissed() -> bool:
+        return note is not None and note.exists()
+
+    _be_quiet_when(is_dismissed)
+    if ending is not None and not (is_interruption(ending) and is_dismissed()):
+        tell(ending)
+        return exit_code(ending)
+    return 0
+
+
+def _hear_again(report: Callable[[Any], object], error: Any) -> None:
+    """Let Ctrl-C interrupt the program where Python would drop it, as in the callback of a weak reference."""
+    if isinstance(error.exc_value, KeyboardInterrupt):
+        _thread.interrupt_main()
+    else:
+        report(error)
+
+
+def _write_whole_lines() -> None:
+    """Write each line at once and whole, also to a file or a pipe: other programs write there, too."""
+    streams: tuple[object, ...] = (sys.stdout, sys.stderr)
+    for stream in streams:
+        if isinstance(stream, TextIOWrapper):  # None, where there is no output
+            stream.reconfigure(line_buffering=True, write_through=False)
+
+
+def _be_quiet_when(is_dismissed: Callable[[], bool]) -> None:
+    """Say nothing of an interruption of ours while Python waits for the threads that the program has left."""
+    report = sys.unraisablehook
+
+    def report_others(error: Any) -> None:
+        if not (is_interruption(error.exc_value) and is_dismissed()):
+            report(error)
+
+    sys.unraisablehook = report_others

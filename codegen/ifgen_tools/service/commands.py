@@ -134,6 +134,6 @@ def echo(chosen: EchoOptions) -> None:
     Who serves or calls it says so while introspection is on: `configure_introspection(...)` of its server or
     client in rclpy. There are no values in the events while the state is METADATA.
     """
-    from ifgen_tools.service.echo import echo
+    from ifgen_tools.service.call import echo
 
     echo(chosen)

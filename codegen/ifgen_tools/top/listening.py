@@ -18,7 +18,7 @@ from ifgen_tools.types import topic_class
 if TYPE_CHECKING:
     from rclpy.node import Node
 
-    from ifgen_tools.top.graph import Topic
+    from ifgen_tools.top.collector import Topic
 
 _DEPTH: Final = 10
 _PATIENCE: Final = 0.5  # [s] for a node that is to describe a type

@@ -11,8 +11,7 @@ import yaml
 from ifgen.command_kit.tool import ToolError
 
 from ifgen_tools.session import open_session
-from ifgen_tools.texts.formats import as_csv, as_json, as_yaml
-from ifgen_tools.texts.select import condition, selector
+from ifgen_tools.texts.formats import as_csv, as_json, as_yaml, condition, selector
 from ifgen_tools.topic import topics
 from ifgen_tools.topic.options import EchoOptions
 

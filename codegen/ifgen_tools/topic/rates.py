@@ -17,7 +17,7 @@ from ifgen_runtime.field_types import fields_of, type_name
 
 from ifgen_tools.qos import QosChoice
 from ifgen_tools.session import Session, open_session
-from ifgen_tools.texts.select import condition
+from ifgen_tools.texts.formats import condition
 from ifgen_tools.topic import topics
 from ifgen_tools.topic.options import HzOptions, RateOptions
 

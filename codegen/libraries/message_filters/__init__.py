@@ -1,8 +1,7 @@
 """Filters that take messages in and pass them on, cached or synchronised (message_filters 4.11 of Jazzy)."""
 
-from message_filters._filters import Cache, Chain, Subscriber
+from message_filters._filters import Cache, Chain, SimpleFilter, Subscriber
 from message_filters._synchronizers import ApproximateTimeSynchronizer, TimeSynchronizer
-from message_filters.simple_filter import SimpleFilter
 
 __all__ = [
     "ApproximateTimeSynchronizer",

@@ -8,8 +8,7 @@ from typing import Any
 from rclpy.duration import Duration
 from rclpy.time import Time
 
-from message_filters._filters import stamp_of
-from message_filters.simple_filter import SimpleFilter
+from message_filters._filters import SimpleFilter, stamp_of
 
 _Queue = dict[int, Any]
 """Messages by their times, in nanoseconds."""

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
-from message_filters.simple_filter import SimpleFilter
+from message_filters._filters import SimpleFilter
 
 __all__ = [
     "CachedComparisonHandler",

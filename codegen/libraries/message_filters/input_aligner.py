@@ -12,7 +12,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.time import Time
 
-from message_filters.simple_filter import SimpleFilter
+from message_filters._filters import SimpleFilter
 
 _NEVER = 2**63 - 1
 

@@ -1,4 +1,4 @@
-"""`BufferCore`: a tree of frames that move, and the transforms between any two of them at any time."""
+"""`BufferCore`: a tree of frames that move, the transforms between any two at any time, and reports of it."""
 
 from __future__ import annotations
 
@@ -7,13 +7,78 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from rclpy.time import Time
 
-from tf2_py import messages, reports
-from tf2_py.caches import seconds
-from tf2_py.messages import to_message, to_nanoseconds
-from tf2_py.names import complaint, require
+from tf2_py import messages
+from tf2_py.caches import Cache, seconds
+from tf2_py.messages import complaint, require, to_message, to_nanoseconds
 from tf2_py.transforms import Vector, compose, normalized
-from tf2_py.tree import FrameTree, without_detour
-from tf2_py.velocity import Twist, twist_between
+from tf2_py.tree import FrameTree, Twist, twist_between, without_detour
+
+# What a rate is worked out with if all transforms are of one time [ns].
+_SHORTEST_SPAN = 100_000
+
+
+def as_yaml(tree: FrameTree) -> str:
+    """Return each frame with its parent, who sends it, and how often: a document in YAML."""
+    if not tree.frames:
+        return "[]"
+    parts: list[str] = []
+    for name, cache in tree.frames.items():
+        edge = None if cache is None else cache.newest_edge
+        if cache is None or edge is None:
+            continue
+        parts.append(
+            f"{name}: \n"
+            f"  parent: '{edge[0]}'\n"
+            f"  broadcaster: '{_authority(tree, name)}'\n"
+            f"  rate: {_rate(cache):.3f}\n"
+            f"  most_recent_transform: {seconds(cache.latest)}\n"
+            f"  oldest_transform: {seconds(cache.oldest)}\n"
+            f"  buffer_length: {_span(cache):.3f}\n"
+        )
+    return "".join(parts)
+
+
+def as_dot(tree: FrameTree, now: int) -> str:
+    """Return the tree as a graph of Graphviz, with ages if the time `now` [ns] is not 0."""
+    lines = ["digraph G {\n"]
+    if not tree.frames:
+        lines.append('"no tf data recieved"')
+    for name, cache in tree.frames.items():
+        edge = None if cache is None else cache.newest_edge
+        if cache is None or edge is None:
+            continue
+        age = f"( {(now - cache.latest) * 1e-9:.3f} sec old)" if now else ""
+        lines.append(
+            f'"{edge[0]}" -> "{name}"[label="Broadcaster: {_authority(tree, name)}\\n'
+            f"Average rate: {_rate(cache):.3f} Hz\\n"
+            f"Most recent transform: {seconds(cache.latest)} {age}\\n"
+            f'Buffer length: {_span(cache):.3f} sec\\n"];\n'
+        )
+    recorded = f'"Recorded at time: {seconds(now)}"[ shape=plaintext ] ;\n ' if now else ""
+    for name, cache in tree.frames.items():
+        is_root = cache is None and now != 0
+        if is_root or (cache is not None and cache.newest_edge is None):
+            lines.append(
+                "edge [style=invis];\n"
+                ' subgraph cluster_legend { style=bold; color=black; label ="view_frames Result";\n'
+                f'{recorded}}}->"{name}";\n'
+            )
+    return "".join([*lines, "}"])
+
+
+def _authority(tree: FrameTree, name: str) -> str:
+    return tree.authorities.get(name, "no recorded authority")
+
+
+def _rate(cache: Cache) -> float:
+    """Transforms per second."""
+    return len(cache) * 1e9 / max(cache.latest - cache.oldest, _SHORTEST_SPAN)
+
+
+def _span(cache: Cache) -> float:
+    """The time from the oldest to the latest, in seconds."""
+    return (cache.latest - cache.oldest) * 1e-9
+
 
 if TYPE_CHECKING:
     import builtin_interfaces.msg
@@ -175,7 +240,7 @@ class BufferCore:
     def all_frames_as_yaml(self) -> str:
         """Return each frame with its parent, who sends it, and how often: a document in YAML."""
         with self._lock:
-            return reports.as_yaml(self._tree)
+            return as_yaml(self._tree)
 
     def all_frames_as_string(self) -> str:
         """Return a line for each frame that has had a parent."""
@@ -184,7 +249,7 @@ class BufferCore:
 
     def _allFramesAsDot(self, time: TimeLike | None = None) -> str:
         with self._lock:
-            return reports.as_dot(self._tree, 0 if time is None else to_nanoseconds(time))
+            return as_dot(self._tree, 0 if time is None else to_nanoseconds(time))
 
     def _frameExists(self, frame_id: str, /) -> bool:
         with self._lock:

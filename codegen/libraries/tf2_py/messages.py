@@ -1,9 +1,9 @@
-"""Between messages of ROS and the values of the tree."""
+"""Messages of ROS and values of the tree, converted both ways; checks of the names of frames."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -12,7 +12,45 @@ from geometry_msgs.msg import Transform as TransformMessage
 from rclpy.logging import get_logger
 from std_msgs.msg import Header
 
+from tf2_py.exceptions import InvalidArgumentException, LookupException
 from tf2_py.transforms import Transform, normalized
+
+
+def require(frame: Any, known: Container[str], place: str) -> None:
+    """Refuse a name that a lookup cannot use; `place` is where it comes from.
+
+    :raises InvalidArgumentException: if no frame can have such a name.
+    :raises LookupException: if no frame has it.
+    :raises TypeError: if it is not a string.
+    """
+    if wrong := _wrong(frame):
+        raise InvalidArgumentException(
+            f'Invalid argument "{frame}" passed to {place} - in tf2 frame_ids cannot {wrong}'
+        )
+    if frame not in known:
+        raise LookupException(f'"{frame}" passed to {place} does not exist. ')
+
+
+def complaint(known: Container[str], **frames: Any) -> str:
+    """Return the first thing that is wrong with names; empty if they are right.
+
+    :raises TypeError: if one is not a string.
+    """
+    for argument, frame in frames.items():
+        wrong = _wrong(frame)
+        if wrong or frame not in known:
+            why = f"in tf2 frame_ids cannot {wrong}" if wrong else "frame does not exist"
+            return f'Invalid frame ID "{frame}" passed to canTransform argument {argument} - {why}'
+    return ""
+
+
+def _wrong(frame: Any) -> str:
+    if not isinstance(frame, str):
+        raise TypeError(f"the name of a frame must be a str, got {frame!r}")
+    if not frame:
+        return "be empty"
+    return "start with a '/'" if frame[0] == "/" else ""
+
 
 NANOSECONDS = 10**9
 _logger = get_logger("tf2")

@@ -6,7 +6,7 @@ from typing import Any
 
 from rclpy.impl.rcl import service_introspection
 from rclpy.impl.rcl.action_client import ActionClient
-from rclpy.impl.rcl.action_goals import ActionGoalHandle, GoalEvent
+from rclpy.impl.rcl.action_entity import ActionGoalHandle, GoalEvent
 from rclpy.impl.rcl.action_server import ActionServer
 from rclpy.impl.rcl.arguments import rclpy_remove_ros_args
 from rclpy.impl.rcl.clock import (

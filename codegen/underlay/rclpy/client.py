@@ -11,8 +11,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.impl import blocking, distro
-from rclpy.impl.blocking import wait_for_graph
-from rclpy.impl.blocks import Owned
+from rclpy.impl.blocking import Owned, wait_for_graph
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
 from rclpy.impl.reexports import reexport

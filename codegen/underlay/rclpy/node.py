@@ -51,8 +51,7 @@ from rclpy.executors import Executor
 from rclpy.expand_topic_name import expand_topic_name
 from rclpy.guard_condition import GuardCondition
 from rclpy.impl import distro
-from rclpy.impl.blocking import wait_for_graph
-from rclpy.impl.blocks import Block
+from rclpy.impl.blocking import Block, wait_for_graph
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import cleaned, wrong_return
 from rclpy.impl.reexports import reexport

@@ -14,7 +14,7 @@ from rclpy.callback_groups import CallbackGroup
 from rclpy.clock import Clock
 from rclpy.context import Context
 from rclpy.exceptions import InvalidHandle, ROSInterruptException
-from rclpy.impl.blocks import Owned
+from rclpy.impl.blocking import Owned
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.reexports import reexport
 from rclpy.utilities import get_default_context

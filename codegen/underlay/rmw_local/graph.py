@@ -18,7 +18,7 @@ from rmw_local.service import ServiceClient, ServiceEndpoint, ServiceQos, Servic
 from rmw_local.writer import DurableWriter, Writer
 
 if TYPE_CHECKING:
-    from ifgen_runtime.mismatch.limits import WarningLimit
+    from ifgen_runtime.mismatch.reporting import WarningLimit
 
     from rmw_local.content_filter import ContentFilter
     from rmw_local.lockstep.side import Side
@@ -88,7 +88,7 @@ class Participant:
     @cached_property
     def warning_limit(self) -> WarningLimit:
         """The number of warnings about definitions that differ."""
-        from ifgen_runtime.mismatch.limits import WarningLimit  # late: definitions hardly ever differ
+        from ifgen_runtime.mismatch.reporting import WarningLimit  # late: definitions hardly ever differ
 
         return WarningLimit()
 

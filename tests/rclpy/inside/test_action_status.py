@@ -10,7 +10,7 @@ from builtin_interfaces.msg import Time
 from hypothesis import example, given
 from hypothesis import strategies as st
 from ifgen_runtime import serialize
-from rclpy.impl.rcl.action_goals import StatusArray, states
+from rclpy.impl.rcl.action_entity import StatusArray, states
 from rmw_local.message import DecodeError, message_type
 from unique_identifier_msgs.msg import UUID
 

@@ -13,9 +13,15 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from ifgen_runtime.parameters.parameter_scalars import read_scalar
 from rclpy.impl.rcl import names
-from rclpy.impl.rcl.arguments import Arguments, parse_arguments, rclpy_remove_ros_args
+from rclpy.impl.rcl.arguments import (
+    Arguments,
+    ParameterOverrides,
+    parse_arguments,
+    parse_override_rule,
+    rclpy_remove_ros_args,
+    read_file,
+)
 from rclpy.impl.rcl.handle import RCLError, UnknownROSArgsError
-from rclpy.impl.rcl.parameters import ParameterOverrides, parse_override_rule, read_file
 from rclpy.impl.rcl.rules import RuleError, parse_remap_rule, remapped_topic
 
 RULE_PIECES = st.sampled_from(

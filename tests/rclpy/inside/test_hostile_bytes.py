@@ -21,7 +21,7 @@ from ifgen_runtime.mismatch.reporting import Mismatch, Side, explanation
 from ifgen_runtime.mismatch.type_description_client import Definitions, Question
 from ifgen_runtime.type_description import describe
 from rmw_local.qos import KEEP_LAST, QosProfile
-from rmw_local.transports import type_descriptions
+from rmw_local.transports import reporter
 from rmw_local.transports.interface import Entity, Kind
 from std_msgs.msg import Float64, String
 from std_srvs.srv import SetBool
@@ -169,9 +169,9 @@ documents = st.fixed_dictionaries(
 
 
 @pytest.fixture(scope="module")
-def connection(honest: Process) -> type_descriptions._Connection:
+def connection(honest: Process) -> reporter._Connection:
     assert honest.link is not None
-    return type_descriptions._Connection(honest.domain, honest.link._transport)
+    return reporter._Connection(honest.domain, honest.link._transport)
 
 
 @given(
@@ -186,7 +186,7 @@ def connection(honest: Process) -> type_descriptions._Connection:
 )
 @CASES
 def test_whatever_a_node_says_of_its_definitions_is_explained_or_left_out(
-    connection: type_descriptions._Connection, answer: bytes
+    connection: reporter._Connection, answer: bytes
 ) -> None:
     question = Question("/evil", POINT, f"RIHS01_{'1' * 64}")
     definitions = Definitions(lambda: nullcontext(connection), lambda: False)

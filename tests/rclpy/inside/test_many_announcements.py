@@ -40,7 +40,7 @@ def test_who_still_announces_is_waited_for() -> None:
 @pytest.mark.parametrize("most", [0, 3], ids=["all of them", "most of them"])
 def test_who_is_one_of_many_talks_like_others(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Beyond some, endpoints share subscribers, and have tokens with other keys."""
-    crowds = pytest.importorskip("rmw_local.transports.zenoh.crowds")
+    crowds = pytest.importorskip("rmw_local.transports.zenoh.presence")
     monkeypatch.setattr(crowds, "_MOST", most)
     with connected("zenoh") as pair:
         one, other = pair.process("one"), pair.process("other")

@@ -95,7 +95,7 @@ def test_left_over_bytes_of_a_response(
     log()
     assert [result(executor, client.call_async(OldAdd.Request(a=0.5))).sum for _ in range(3)] == [0.5] * 3
     (line,) = log()
-    assert "1 byte of a message of /server are left over" in line
+    assert "1 byte of a message of /server were left over after" in line
 
 
 @pytest.mark.parametrize("policies", [("refuse", "warn"), ("warn", "refuse"), ("adapt", "refuse")])

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 from ifgen.nodl.model import Category, QosProfile, qos_mismatch
 from ifgen_tools.graph.connections import Graph, of_endpoints
 from ifgen_tools.graph.layout import layout
-from ifgen_tools.graph.svg import svg
-from ifgen_tools.graph.text import dot, mermaid
+from ifgen_tools.graph.svg import dot, mermaid, svg
 from ifgen_tools.ros_graph import Endpoint
 
 BEST_EFFORT = QosProfile("KEEP_LAST", "BEST_EFFORT", depth=1)

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from ifgen.command_kit.tool import ToolError
 from ifgen.dynamic import class_from_text
-from ifgen_tools.texts.select import selector
+from ifgen_tools.texts.formats import selector
 
 CLASS: type[Any] = class_from_text(
     "demo_msgs/msg/Route", "geometry_msgs/Point[] points\nfloat64[3] limits\nfloat64 speed"

@@ -9,8 +9,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from ifgen_tools.top.snapshot import ServiceRow, TopicRow
-from ifgen_tools.top.web.page import tree
-from ifgen_tools.top.web.picture import distances, pictures, structure
+from ifgen_tools.top.web.page import distances, pictures, structure, tree
 
 from tests.tools.top.samples import ROBOT
 

@@ -23,6 +23,7 @@ from ifgen.diagnostics import InputError, Source, shown_path
 from ifgen.pipeline.values import Condition
 from ifgen.reading.storage import read_source
 from ifgen.signals import sigterm_raises
+from ifgen.writing import transaction
 
 if TYPE_CHECKING:
     from ifgen.definition.interfaces import Registry
@@ -70,8 +71,6 @@ def lock(
         return _check(path, text, quiet=quiet)
     changed = _changes(path, text)
     if changed:
-        from ifgen.writing import transaction
-
         with sigterm_raises():
             transaction.apply([(path, text.encode())], path.parent)
     if not quiet:

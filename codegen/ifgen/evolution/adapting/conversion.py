@@ -25,7 +25,7 @@ from ifgen.definition.types import (
     ValueType,
 )
 from ifgen.evolution.values import same_constant
-from ifgen.generator_py.messages.enums import values
+from ifgen.generator_py.messages.context import values
 from ifgen.wire.program import NUMBERS
 
 Converter: TypeAlias = Callable[[NamespacedType, NamespacedType], "str | None"]

@@ -19,10 +19,16 @@ from ifgen.definition.types import (
     NamespacedType,
     UnboundedSequence,
 )
-from ifgen.generator_py.codec.python.text import CodecText, render
+from ifgen.generator_py.codec.text import CodecText, render
 from ifgen.generator_py.imports import IN_MESSAGES, Import, Scope
-from ifgen.generator_py.messages.context import ClassLines, ConstantText, FieldText, MessageClass, ViewsText
-from ifgen.generator_py.messages.enums import enums
+from ifgen.generator_py.messages.context import (
+    ClassLines,
+    ConstantText,
+    FieldText,
+    MessageClass,
+    ViewsText,
+    enums,
+)
 from ifgen.generator_py.messages.fields import Reference, default_literal, literal, python_field, rosidl_text
 from ifgen.generator_py.names import class_reference, slot_name
 from ifgen.generator_py.text import docstring

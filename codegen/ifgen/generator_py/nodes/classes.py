@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ifgen.generator_py.nodes.context import NodeModule
 from ifgen.generator_py.nodes.endpoints import NodeTexts
-from ifgen.generator_py.nodes.imports import Imports
+from ifgen.generator_py.nodes.members import Imports
 from ifgen.generator_py.nodes.parameters import declared
 from ifgen.generator_py.text import are_long, docstring, quoted
 from ifgen.nodl.barriers import LIFECYCLE_NODE, NODE

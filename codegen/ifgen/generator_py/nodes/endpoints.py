@@ -13,8 +13,7 @@ from ifgen.generator_py.nodes.context import (
     SubscriptionText,
     TimerText,
 )
-from ifgen.generator_py.nodes.imports import Imports, references
-from ifgen.generator_py.nodes.members import Clockwork, members_of
+from ifgen.generator_py.nodes.members import Clockwork, Imports, members_of, references
 from ifgen.generator_py.text import docstring, literal, qos_profile, quoted, signature
 from ifgen.nodl.model import Endpoint, NodeDescription
 

@@ -12,7 +12,7 @@ from ifgen.generator_py.nodes.context import (
     ParametersModule,
     ParameterText,
 )
-from ifgen.generator_py.nodes.imports import Imports
+from ifgen.generator_py.nodes.members import Imports
 from ifgen.generator_py.text import are_long, call, docstring, literal, quoted
 from ifgen.nodl.model import NodeDescription, Parameter, ParameterType, Validator
 from ifgen.nodl.syntax.scalars import comment

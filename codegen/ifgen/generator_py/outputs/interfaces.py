@@ -45,7 +45,7 @@ from ifgen.definition.types import (
     element_of,
 )
 from ifgen.diagnostics import Span
-from ifgen.generator_py.messages import enums
+from ifgen.generator_py.messages import context
 from ifgen.generator_py.messages.fields import zero_literal
 from ifgen.generator_py.names import interface_name
 from ifgen.generator_py.outputs.wire import PRIMITIVES, Wires
@@ -206,7 +206,7 @@ class _Builder:
     def _built(self, message: Message) -> model.Message:
         owner, kind = self._owners[message.type_name]
         self._place(message.type_name, message.span)
-        owned = {field.name: constants for field, constants in enums.values(message)}
+        owned = {field.name: constants for field, constants in context.values(message)}
         return model.Message(
             id=message.type_name,
             type_name=message.type_name,

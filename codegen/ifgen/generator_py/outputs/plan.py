@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from pathlib import PurePosixPath, PureWindowsPath
 from string import Formatter
@@ -12,7 +11,7 @@ from typing import Final
 
 from ifgen.config.customization import Output
 from ifgen.definition.names import snake_case
-from ifgen.diagnostics import Diagnostic, InputError
+from ifgen.diagnostics import Diagnostic, InputError, did_you_mean
 from ifgen.generator_py.artifact import Artifact
 from ifgen.model import Package
 from ifgen.reading import manifest
@@ -148,12 +147,11 @@ def _wrong_pattern(output: Output) -> Diagnostic | None:
         if field is None:
             continue
         if field not in known:
-            close = get_close_matches(field, known, n=1)
             listed = ", ".join(f"{{{name}}}" for name in known) or "no fields"
             return _problem(
                 output,
                 f"its path has an unknown field {{{field}}}",
-                f"did you mean {{{close[0]}}}?" if close else f"an output per {output.per} has {listed}",
+                did_you_mean(field, known, form="{{{}}}") or f"an output per {output.per} has {listed}",
             )
         if way or form not in {"", _SNAKE}:
             return _problem(
@@ -195,8 +193,7 @@ def _idle_patterns(output: Output, packages: Sequence[Package]) -> Iterator[Diag
     for pattern in output.only:
         if not any(_picked(package, (pattern,)) for package in packages):
             known = sorted({package.name for package in packages})
-            close = get_close_matches(pattern.partition("/")[0], known, n=1)
-            advice = f"did you mean {close[0]}?" if close else None
+            advice = did_you_mean(pattern.partition("/")[0], known, form="{}") or None
             yield _problem(output, f"'{pattern}' matches nothing", advice, rule="unused-output", key="only")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Container, Iterable, Iterator
-from difflib import get_close_matches
 from pathlib import Path
 
 import jinja2
@@ -12,7 +11,7 @@ import jinja2.meta
 
 from ifgen import resources
 from ifgen.config.customization import Customization, Output
-from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Source, Span, did_you_mean
 from ifgen.generator_py.templates.check.check import Checker
 from ifgen.generator_py.templates.check.syntax import Template, parse, refusal
 from ifgen.generator_py.templates.check.types import spelled
@@ -90,11 +89,11 @@ class _Check:
         others: Iterable[str] = self._ours
         if self._custom.behind_name is not None and self._custom.behind is not None:
             others, advice = files(self._custom.behind), f"`ifgen generators describe {whose}` names them"
-        close = get_close_matches(name, others, n=1)
+        advice = did_you_mean(name, others, form="{}") or advice
         message = (
             f"{self._own[name]} replaces nothing: {whose} has no template {name}, and none of yours uses it"
         )
-        return Diagnostic("unused-template", message, help=f"did you mean {close[0]}?" if close else advice)
+        return Diagnostic("unused-template", message, help=advice)
 
     def _used_by(self, root: str) -> set[str]:
         """A template and all that it and they name: more than they use, perhaps, but nothing is left out."""
@@ -154,7 +153,7 @@ def _trimmed(path: Path) -> Diagnostic | None:
 
 
 def _unknown(output: Output, known: dict[str, Path]) -> Diagnostic:
-    close = get_close_matches(output.template, known, n=1)
-    advice = f"did you mean {close[0]}?" if close else "ifgen looks for it in `templates` of [tool.ifgen]"
+    hint = did_you_mean(output.template, known, form="{}")
+    advice = hint or "ifgen looks for it in `templates` of [tool.ifgen]"
     message = f"output '{output.name}' cannot be made: there is no template {output.template}"
     return Diagnostic("unknown-template", message, output.label("template"), help=advice)

@@ -10,11 +10,11 @@ import os
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from difflib import SequenceMatcher, get_close_matches
+from difflib import SequenceMatcher
 from pathlib import Path
 
 from ifgen import resources
-from ifgen.diagnostics import Diagnostic, InputError, UsageError
+from ifgen.diagnostics import Diagnostic, InputError, UsageError, did_you_mean
 from ifgen.reading.storage import read_limited
 from ifgen.writing import transaction
 
@@ -111,8 +111,8 @@ def choose(wanted: Iterable[str], known: Iterable[str]) -> tuple[str, ...]:
         found = [k for k in known if plain in {EVERYTHING, k} or k.startswith(f"{plain}/")]
         chosen.update(dict.fromkeys(found))
         if not found:
-            close = get_close_matches(plain, [*known, *{k.partition("/")[0] for k in known}], n=1)
-            advice = f"did you mean {close[0]}?" if close else "`ifgen templates list` names them"
+            names = (*known, *{k.partition("/")[0] for k in known})
+            advice = did_you_mean(plain, names, form="{}") or "`ifgen templates list` names them"
             problems.append(Diagnostic("unknown-template", f"there is no template {name}", help=advice))
     if problems:
         raise UsageError(problems)

@@ -21,8 +21,7 @@ from ifgen.generator_py.tests.context import (
     TimerText,
     TopicText,
 )
-from ifgen.generator_py.tests.parameter_values import accepted, refused
-from ifgen.generator_py.tests.strategies import Strategies
+from ifgen.generator_py.tests.strategies import Strategies, accepted, refused
 from ifgen.generator_py.text import literal, qos_arguments, quoted
 from ifgen.nodl.model import Endpoint, NodeDescription, Parameter, ParameterValue, Timer
 from ifgen.nodl.names import expanded

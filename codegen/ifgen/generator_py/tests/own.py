@@ -9,8 +9,7 @@ from ifgen.definition.interfaces import Action, Interface, Message, Registry, Se
 from ifgen.definition.types import NamespacedType, element_of
 from ifgen.generator_py.imports import IN_NODES, Names
 from ifgen.generator_py.messages.fields import default_value, is_float32
-from ifgen.generator_py.nodes.imports import references
-from ifgen.generator_py.nodes.members import Clockwork, members_of
+from ifgen.generator_py.nodes.members import Clockwork, members_of, references
 from ifgen.generator_py.tests.context import OwnTests
 from ifgen.generator_py.tests.contract import given_at_start, is_clock, period_of
 from ifgen.generator_py.text import are_long, quoted

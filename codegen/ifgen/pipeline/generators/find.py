@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
-from difflib import get_close_matches
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
@@ -12,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ifgen.config.customization import Target
-from ifgen.diagnostics import Diagnostic, InputError, Label, Span
+from ifgen.diagnostics import Diagnostic, InputError, Label, Span, did_you_mean
 from ifgen.generators import GROUP, Generator, Option, Request
 from ifgen.generators.protocol import generate_request
 from ifgen.model import VERSION
@@ -53,8 +52,7 @@ def named(name: str, span: Span | None = None) -> Generator:
     """The installed generator of this name. Raises InputError if there is none, or it cannot be loaded."""
     entry_point = installed().get(name)
     if entry_point is None:
-        close = get_close_matches(name, installed(), n=1)
-        advice = f"did you mean '{close[0]}'?" if close else "`ifgen generators list` names all there are"
+        advice = did_you_mean(name, installed()) or "`ifgen generators list` names all there are"
         raise InputError([failure(span, f"there is no generator '{name}'", advice)])
     package = entry_point.dist.name if entry_point.dist else "a package"
     try:
@@ -102,9 +100,8 @@ def _wrong_options(target: Target, generator: Generator) -> Iterator[Diagnostic]
     for name, value in target.options.items():
         option = options.get(name)
         if option is None:
-            close = get_close_matches(name, options, n=1)
             listed = f"its options are {', '.join(options)}" if options else "it has none"
-            advice = f"did you mean '{close[0]}'?" if close else listed
+            advice = did_you_mean(name, options) or listed
             message = f"generator '{generator.name}' has no option '{name}'"
             yield _wrong_option(target, name, message, advice)
         elif expected := _expected(option, value):

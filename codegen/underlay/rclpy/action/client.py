@@ -13,14 +13,14 @@ from ifgen_runtime.errors import ServerGoneError
 from rmw_local import timing
 from unique_identifier_msgs.msg import UUID
 
+from rclpy.action._goals import ActionWaitable
 from rclpy.action._goals import ClientGoalHandle as ClientGoalHandle  # noqa: PLC0414 - programs import it from here
-from rclpy.action._waiting import ActionWaitable
 from rclpy.executors import await_or_execute
 from rclpy.impl import blocking, distro
 from rclpy.impl.blocking import wait_for_graph
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.messages import wrong_class
-from rclpy.impl.rcl.action_goals import key_of
+from rclpy.impl.rcl.action_entity import key_of
 from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import ActionT_co, Generic
 from rclpy.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING, Any
 
 from action_msgs.msg import GoalInfo, GoalStatus
 
+from rclpy.action._goals import ActionWaitable
 from rclpy.action._goals import ServerGoalHandle as ServerGoalHandle  # noqa: PLC0414 - programs import it from here
-from rclpy.action._waiting import ActionWaitable
 from rclpy.exceptions import InvalidHandle
 from rclpy.executors import await_or_execute
 from rclpy.impl import distro
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.logging_severity import LoggingSeverity as _LoggingSeverity
 from rclpy.impl.messages import wrong_return
-from rclpy.impl.rcl.action_goals import key_of
+from rclpy.impl.rcl.action_entity import key_of
 from rclpy.impl.rcutils_logger import RcutilsLogger as _RcutilsLogger
 from rclpy.impl.reexports import reexport
 from rclpy.impl.typed import ActionT_co, Generic

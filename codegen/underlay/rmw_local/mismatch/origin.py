@@ -12,6 +12,8 @@ from pathlib import Path
 from traceback import extract_tb
 from typing import TYPE_CHECKING, Any
 
+from ifgen_runtime.mismatch.reporting import left_over
+
 from rmw_local import observer, report
 from rmw_local.message import DecodeError, MessageType, SerializationError, message_type
 
@@ -92,9 +94,8 @@ class Origin:
         if rest <= 0 or (self._is_raw and rest < _PADDING and len(data) % _PADDING == 0):
             return
         if self._is_first("left over"):
-            number = "1 byte" if rest == 1 else f"{rest} bytes"
-            text = f"{number} of a message of {self._peer} are left over. The message was delivered."
-            report.say(receiver, f"{self._where}: {text} {self._likely_reason()}{_ONCE}")
+            text = left_over(rest, self._peer, kind.name)
+            report.say(receiver, f"{self._where}: {text}. {self._likely_reason()}{_ONCE}")
 
     def _likely_reason(self) -> str:
         if self._is_raw:

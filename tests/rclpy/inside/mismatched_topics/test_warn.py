@@ -8,7 +8,7 @@ from collections.abc import Callable
 import rclpy
 from ifgen.dynamic import class_from_text
 from ifgen_runtime.codec import serialize
-from ifgen_runtime.mismatch import limits
+from ifgen_runtime.mismatch import reporting
 from ifgen_runtime.mismatch.reporting import Mismatch
 from rclpy.node import Node
 
@@ -82,7 +82,10 @@ def test_bytes_that_are_left_over_are_said_once_and_counted(log: Callable[[], li
     (*_, origin), *_ = subscription.handle.reader._queue
     spin(receiver)
     (line,) = log()
-    assert "topic '/speed': 7 bytes of a message of /sender are left over. The message was delivered." in line
+    assert (
+        "topic '/speed': 7 bytes of a message of /sender were left over after demo_msgs/msg/Speed. The message was delivered"
+        in line
+    )
     assert origin.counts == {"left over": 3}
 
 
@@ -111,7 +114,7 @@ def test_published_bytes_are_looked_at_too(log: Callable[[], list[str]]) -> None
     spin(receiver)
     assert [message.value for message in got] == [0.1, 0.2, 0.3, 0.4]
     (line,) = log()
-    assert "bytes of a message of /sender are left over" in line
+    assert "bytes of a message of /sender were left over after" in line
     assert "It publishes bytes" in line
     late = node("late")
     late.create_subscription(New, "speed", got.append, LATCHED)
@@ -166,14 +169,14 @@ def test_nodes_that_come_and_go_by_the_thousand_fill_neither_log_nor_memory(
         sender.destroy_publisher(publisher)
     assert len(heard) == 1000
     warnings = log()
-    assert len(warnings) == limits.WARNINGS + 1
+    assert len(warnings) == reporting.WARNINGS + 1
     assert "which is not said any more" in warnings[-1]
     for index in range(1000):
         names = f"speed{index}"
         ends = (receiver.create_subscription(New, names, print, 1), sender.create_publisher(Old, names, 1))
         receiver.destroy_subscription(ends[0])
         sender.destroy_publisher(ends[1])
-    assert len(log()) == limits.NAMES - 1 + limits.WARNINGS + 1
-    assert len(reader.node.participant.warning_limit._counts) == limits.NAMES + 1
+    assert len(log()) == reporting.NAMES - 1 + reporting.WARNINGS + 1
+    assert len(reader.node.participant.warning_limit._counts) == reporting.NAMES + 1
     gc.collect()
     assert reader.encounters == ()

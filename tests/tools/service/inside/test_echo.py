@@ -10,8 +10,8 @@ from collections.abc import Iterator
 import pytest
 import rclpy
 from example_interfaces.srv import AddTwoInts
+from ifgen_tools.service.call import echo
 from ifgen_tools.service.commands import EchoOptions
-from ifgen_tools.service.echo import echo
 from ifgen_tools.texts.style import Style
 from rclpy.node import Node
 from rclpy.qos import qos_profile_services_default

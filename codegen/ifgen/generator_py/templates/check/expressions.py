@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from difflib import get_close_matches
 
 import jinja2
 from jinja2 import nodes
 from jinja2.filters import FILTERS
 
-from ifgen.diagnostics import Diagnostic, Label, Severity
+from ifgen.diagnostics import Diagnostic, Label, Severity, did_you_mean
 from ifgen.generator_py.templates.check import filters
 from ifgen.generator_py.templates.check.frame import Frame, Macro, facts_of, path_of
 from ifgen.generator_py.templates.check.types import (
@@ -353,7 +352,6 @@ def _owner(node: nodes.Node) -> nodes.Node:
 
 
 def _advice(word: str, known: Sequence[str]) -> str | None:
-    close = get_close_matches(word, known, n=1) if word else ()
-    if close:
-        return f"did you mean '{close[0]}'?"
+    if hint := did_you_mean(word, known):
+        return hint
     return f"known here: {', '.join(known)}" if known and len(known) <= _LISTED else None

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from rmw_local.message import DecodeError, message_type
 
-from .action_entity import ActionEntity
-from .action_goals import states
+from .action_entity import ActionEntity, states
 from .handle import RCLError
 from .services import Client
 from .topics import Subscription

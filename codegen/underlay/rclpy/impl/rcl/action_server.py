@@ -6,8 +6,7 @@ import threading
 from collections import deque
 from typing import TYPE_CHECKING, Any
 
-from .action_entity import ActionEntity
-from .action_goals import Goal, GoalEvent, StatusArray, key_of
+from .action_entity import ActionEntity, Goal, GoalEvent, StatusArray, key_of
 from .clock import Clock, Timer
 from .handle import RCLError
 from .services import Service

@@ -43,8 +43,7 @@ from rmw_local.transports.interface import (
 from rmw_local.transports.zenoh import attachments, inquiries, services, tokens
 from rmw_local.transports.zenoh.calls import Calls
 from rmw_local.transports.zenoh.config import reason
-from rmw_local.transports.zenoh.crowds import Crowds
-from rmw_local.transports.zenoh.presence import PATIENCE, Gate, Presence, Publication
+from rmw_local.transports.zenoh.presence import PATIENCE, Crowds, Gate, Presence, Publication
 from rmw_local.transports.zenoh.services import Asking, Queried, Questions, Serving
 from rmw_local.transports.zenoh.shared_memory import SharedMemory
 from rmw_local.transports.zenoh.tokens import alive_key, data_key, receipts_key, settled_key, statistics_key

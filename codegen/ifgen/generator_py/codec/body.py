@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import TypeAlias
 
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec.python.statements import (
+from ifgen.generator_py.codec.statements import (
     POSITION,
     Assign,
     Choice,

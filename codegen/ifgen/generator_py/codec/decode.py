@@ -11,10 +11,17 @@ from collections.abc import Sequence
 from typing import assert_never
 
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec.python.body import Constants, Reference
-from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece, run_format
-from ifgen.generator_py.codec.python.reads import Reads, tuple_target
-from ifgen.generator_py.codec.python.statements import (
+from ifgen.generator_py.codec.body import Constants, Reference
+from ifgen.generator_py.codec.reads import (
+    BLANK,
+    Piece,
+    Reads,
+    count_piece,
+    number_piece,
+    run_format,
+    tuple_target,
+)
+from ifgen.generator_py.codec.statements import (
     POSITION,
     Assign,
     Do,

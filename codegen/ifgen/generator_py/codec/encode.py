@@ -18,10 +18,10 @@ from collections.abc import Callable, Sequence
 from typing import Final, NamedTuple, assert_never
 
 from ifgen.definition.types import BasicTypeName
-from ifgen.generator_py.codec.python.body import Constants, Reference
-from ifgen.generator_py.codec.python.parts import Parts, Wire
-from ifgen.generator_py.codec.python.pieces import BLANK, Piece, count_piece, number_piece
-from ifgen.generator_py.codec.python.statements import POSITION, Positioned, product, slot_text, variable
+from ifgen.generator_py.codec.body import Constants, Reference
+from ifgen.generator_py.codec.parts import Parts, Wire
+from ifgen.generator_py.codec.reads import BLANK, Piece, count_piece, number_piece
+from ifgen.generator_py.codec.statements import POSITION, Positioned, product, slot_text, variable
 from ifgen.wire.positions import (
     Alignment,
     Positions,

@@ -6,13 +6,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ifgen.definition.types import NamespacedType
-from ifgen.generator_py.codec.python.body import Body, Constants, Reference, functions
-from ifgen.generator_py.codec.python.decode import Decoder
-from ifgen.generator_py.codec.python.encode import Encoder
-from ifgen.generator_py.codec.python.parts import Parts
-from ifgen.generator_py.codec.python.pieces import HEADER, HEADER_SIZE
-from ifgen.generator_py.codec.python.reads import Reads
-from ifgen.generator_py.codec.python.statements import LINE_LENGTH, POSITION, wrapped
+from ifgen.generator_py.codec.body import Body, Constants, Reference, functions
+from ifgen.generator_py.codec.decode import Decoder
+from ifgen.generator_py.codec.encode import Encoder
+from ifgen.generator_py.codec.parts import Parts
+from ifgen.generator_py.codec.reads import HEADER, HEADER_SIZE, Reads
+from ifgen.generator_py.codec.statements import LINE_LENGTH, POSITION, wrapped
 from ifgen.generator_py.codec.table import Table, table_of
 from ifgen.generator_py.names import class_reference
 from ifgen.wire.positions import Alignment, entry_alignment, largest_alignment, tile_of

@@ -9,15 +9,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from ifgen.generator_py.codec.python.body import Body, Constants
-from ifgen.generator_py.codec.python.pieces import (
+from ifgen.generator_py.codec.body import Body, Constants
+from ifgen.generator_py.codec.reads import (
     HEADER_SIZE,
     Piece,
     after_run,
     padding_piece,
     run_format,
 )
-from ifgen.generator_py.codec.python.statements import POSITION, Positioned
+from ifgen.generator_py.codec.statements import POSITION, Positioned
 from ifgen.wire.positions import Alignment
 
 

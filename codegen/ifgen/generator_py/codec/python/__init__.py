@@ -1,1 +1,0 @@
-"""The rendering of a program as Python text."""
