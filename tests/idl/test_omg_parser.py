@@ -27,7 +27,7 @@ from ifgen.idl.parser import MAX_DEFINITIONS
 def members(text: str) -> list[MemberNode]:
     """The members of a struct."""
     tree = parse_idl(Source(Path("Demo.idl"), f"struct Demo {{ {text} }};"))
-    assert tree.problem is None, tree.problem
+    assert tree.problems == ()
     (struct,) = tree.definitions
     assert isinstance(struct, StructNode)
     return list(struct.members)

@@ -23,9 +23,9 @@ _PLACES: Final = frozenset(("start", "end"))
 
 def formatted_idl(source: Source) -> str:
     """The text of an .idl file in our style."""
-    problem = parse_idl(source).problem
-    if problem is not None:
-        raise InputError([problem])
+    problems = parse_idl(source).problems
+    if problems:
+        raise InputError(problems)
     return _indented(source.text, _IDL_TOKEN, "{", "}", further="([=")
 
 

@@ -8,8 +8,8 @@ from typing import Any, Final, Protocol, cast
 
 from lark.exceptions import UnexpectedInput
 
-from ifgen.diagnostics import Source
-from ifgen.idl import omg_explain
+from ifgen.diagnostics import MAX_PROBLEMS, Diagnostic, Source
+from ifgen.idl import omg_explain, omg_recovery
 from ifgen.idl.omg_tree import (
     AnnotationNode,
     BasicNode,
@@ -163,12 +163,28 @@ def _parser() -> Callable[[str], list[IdlNode]]:
 
 
 def parse_idl(source: Source) -> IdlTree:
-    """The tree of an .idl file. Only the first place where its syntax is wrong is reported."""
-    try:
-        return IdlTree(source, _parser()(source.text), None)
-    except UnexpectedInput as error:
-        expected: set[str] = set(getattr(error, "expected", None) or getattr(error, "allowed", None) or ())
-        token = getattr(error, "token", None)
-        at_end = token is not None and token.type == "$END"
-        position = len(source.text) if at_end else error.pos_in_stream or 0
-        return IdlTree(source, [], omg_explain.syntax(source, position, expected))
+    """The tree of an .idl file. A definition or member with wrong syntax is reported and left out.
+
+    Each attempt reads the rest of the file again. No definition is left after `MAX_PROBLEMS` attempts, or if
+    something stays open up to the end.
+    """
+    text = source.text
+    problems: list[Diagnostic] = []
+    while len(problems) < MAX_PROBLEMS:
+        try:
+            return IdlTree(source, _parser()(text), tuple(problems))
+        except UnexpectedInput as error:
+            expected: set[str] = set(
+                getattr(error, "expected", None) or getattr(error, "allowed", None) or ()
+            )
+            token = getattr(error, "token", None)
+            at_end = token is not None and token.type == "$END"
+            if at_end and problems:
+                break  # it follows from what was left out
+            position = len(source.text) if at_end else error.pos_in_stream or 0
+            problems.append(omg_explain.syntax(source, position, expected))
+            rest = None if at_end else omg_recovery.without(text, position, expected)
+            if rest is None:
+                break
+            text = rest
+    return IdlTree(source, [], tuple(problems))

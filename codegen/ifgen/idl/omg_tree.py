@@ -159,11 +159,11 @@ IdlNode: TypeAlias = ModuleNode | StructNode | ConstantDclNode | TypedefNode | E
 
 
 class IdlTree(NamedTuple):
-    """The definitions of a file; none where its syntax is wrong, as `problem` says."""
+    """The definitions of a file, without those of which `problems` say that their syntax is wrong."""
 
     source: Source
     definitions: Sequence[IdlNode]
-    problem: Diagnostic | None
+    problems: tuple[Diagnostic, ...] = ()
 
 
 NOTHING: Final[Sequence[IdlNode]] = ()

@@ -46,12 +46,14 @@ def interface(
     """
     tree = parse_idl(source)
     contents = contents_of(tree)
-    problem = tree.problem or _too_many(contents, source)
-    if problem is not None:
+    problems.extend(tree.problems, 0)
+    if (problem := _too_many(contents, source)) is not None:
         problems.extend([problem], 0)
         contents = Contents()
         structs: list[Placed[StructNode] | None] = [None] * len(SUFFIXES[folder])
     else:
+        # Beside wrong syntax nothing is said of what the rest means: it may follow from what was left out.
+        problems = FileProblems(source) if tree.problems else problems
         structs = parts_of(contents, source, package, folder, name, problems)
         check_rest(contents, source, problems)
     _check_includes(contents.includes, source, problems, is_there)
