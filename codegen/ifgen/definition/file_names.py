@@ -23,8 +23,8 @@ from ifgen.reading.storage import read_source
 _OF_OTHERS: Final = frozenset(
     (
         *("ifgen", "ifgen_native", "ifgen_pytest", "ifgen_runtime", "rclpy", "rmw_local", "rosidl_parser"),
-        *("hypothesis", "launch", "launch_ros", "numpy", "pytest", "setuptools", "typing_extensions"),
-        *("xxhash", "yaml", "zenoh"),
+        *("hypothesis", "launch", "launch_ros", "numpy", "pytest", "rclpy_asyncio", "setuptools"),
+        *("typing_extensions", "xxhash", "yaml", "zenoh"),
     )
 )
 _OF_PYTHON: Final = """

@@ -50,9 +50,10 @@ _domain = click.option(
 
 @click.group()
 def policy() -> None:
-    """Write who may do what: exactly what the documents of the nodes of launch files declare.
+    """Write which node may do what.
 
-    The names are those after remapping. Nodes without a document may do nothing.
+    That is exactly what the documents of the nodes of launch files declare. The names are those after
+    remapping. Nodes without a document may do nothing.
     """
 
 
@@ -130,10 +131,10 @@ def zenoh(output: Path, domain: int | None, **options: Any) -> int:
 @click.option("--format", "format_", type=click.Choice(["text", "json"]), default="text", help="Output form.")
 @transport_option
 def admit(manifest: Path, against: str, complete: bool, format_: str, transport: TransportChoice) -> int:
-    """Say whether the nodes of a manifest may join a system, and why not.
+    """Say whether nodes may join a system, and why not.
 
-    The exit code is 0 if they may, 1 if not, and 2 if nobody can tell, as where documents or definitions are
-    missing. `ifgen check --system FILE --lock` writes manifests.
+    The nodes are those of a manifest. The exit code is 0 if they may, 1 if not, and 2 if nobody can tell, as
+    where documents or definitions are missing. `ifgen check --system FILE --lock` writes manifests.
     """
     from ifgen_tools.policy import admission
     from ifgen_tools.system import manifest as manifests

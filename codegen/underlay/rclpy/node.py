@@ -225,11 +225,11 @@ class _BaseNode:
     PARAM_REL_TOL = rules.RELATIVE_TOLERANCE
 
     if TYPE_CHECKING:  # each kind of node has its own, with arguments of its own
-        create_publisher: Any
-        create_subscription: Any
-        create_service: Any
-        _create_service: Any
-        destroy_subscription: Any
+        create_publisher: Callable[..., Any]
+        create_subscription: Callable[..., Any]
+        create_service: Callable[..., Any]
+        _create_service: Callable[..., Any]
+        destroy_subscription: Callable[..., Any]
 
     def __init__(
         self,
