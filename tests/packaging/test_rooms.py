@@ -49,6 +49,7 @@ def test_no_room_is_crowded() -> None:
 
 SMALL = {
     "ifgen.command_kit.failures": "only a run that fails loads it",
+    "ifgen.idl.omg_recovery": "only a file with wrong syntax needs it, as `omg_explain`",
     "ifgen.pipeline.typings": "`ifgen typings` as `stages` is `ifgen generate`",
     "ifgen.reading.python_text": "places in Python, beside those in the other kinds of files that are read",
     "ifgen_generators.rust.testee": "code for tests, which users do not get",
