@@ -88,10 +88,11 @@ def test_the_stubs_themselves_satisfy_mypy(rclpy: Mapping[str, str], tmp_path: P
         path = tmp_path / "rclpy" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
+    folders = (ROOT / "codegen", ROOT / "generated", ROOT / "codegen/libraries")
     ended = subprocess.run(
         [sys.executable, "-m", "mypy", "--strict", "--config-file=", f"--cache-dir={tmp_path}", "rclpy"],
         cwd=tmp_path,
-        env={**os.environ, "MYPYPATH": os.pathsep.join(map(str, (ROOT / "codegen", ROOT / "generated")))},
+        env={**os.environ, "MYPYPATH": os.pathsep.join(map(str, folders))},
         capture_output=True,
         text=True,
         timeout=240,

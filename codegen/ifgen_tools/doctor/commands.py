@@ -77,6 +77,9 @@ def _graph_doctor(
     with session_beside(words, transport) as session:
         seen = findings.look(session)
         graph = session.graph()
-    found = [*findings.findings(seen, include), *settle().policy.told(extension("running")(graph))]
-    nodes = terminal.counted(len(seen.nodes), "node")
-    return terminal.print_findings(found, format_, f"{nodes}: all definitions agree")
+    different = list(findings.findings(seen, include))
+    others = settle().policy.told(extension("running")(graph))
+    agreed = f"{terminal.counted(len(seen.nodes), 'node')}: all definitions agree"
+    if others and not different and format_ == "text":
+        print(f"{agreed}\n")
+    return terminal.print_findings([*different, *others], format_, agreed)
