@@ -66,10 +66,13 @@ VERBS = {
 }
 """The arguments of each verb; its name is the first words that are a command."""
 
-OTHERS = {"doctor", "graph", "launch", "nodl conform", "nodl describe", "run"}
-"""Commands for which `running.elsewhere` tells."""
+OTHERS = {"admit", "doctor", "graph", "launch", "nodl conform", "nodl describe", "nodl observe", "run"}
+"""Commands for which `running.elsewhere` or `beside` tells."""
 
-LONELY = {"bag check", "bag migrate", "demo", "interface proto", "test"}
+LONELY = {
+    *("bag check", "bag migrate", "demo", "interface proto", "policy router", "policy sros2", "policy zenoh"),
+    "test",
+}
 """Commands that look for nobody."""
 
 
