@@ -138,7 +138,7 @@ def test_generators_outside_a_checkout(programs: Path, built: Path, tmp_path: Pa
     pip = (sys.executable, "-m", "pip", "--python", python, "install", "--quiet", "--find-links", built)
     run(*pip, "./ros-csv", "./acme-docs", cwd=tmp_path, limit=300)
     listed = [line.split()[0] for line in run(ifgen, "generators", "list", cwd=tmp_path).splitlines()]
-    assert len(listed) == 10 and {"acme-docs", "csv", "typescript"} <= set(listed)
+    assert len(listed) == 11 and {"acme-docs", "csv", "html", "typescript"} <= set(listed)
     for name in listed:
         bounds = '{"bounds": {"*.string": 32, "*.wstring": 32, "*.sequence": 4}}' if name == "c" else "{}"
         said = run(ifgen, "generators", "test", name, "--options", bounds, cwd=tmp_path)
