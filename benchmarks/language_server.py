@@ -1,4 +1,4 @@
-"""Times `ifgen lsp` as an editor sees it, in a workspace of many packages: medians and 95th percentiles.
+"""The language server as an editor meets it, in a workspace of 277 packages.
 
 The workspace holds the packages that come with ifgen several times under other names.
 """
@@ -8,14 +8,18 @@ from __future__ import annotations
 import argparse
 import shutil
 import statistics
+import sys
 import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 
-from tests.language_server.client import Client, editing
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
 
-ROOT = Path(__file__).parents[1]
+from tests.language_server.client import Client, editing  # noqa: E402 - found by the line above
+
+ASKED = {"keystroke to diagnostics": 50, "hover": 20, "rename of a type used 201 times": 300}
 
 
 def main() -> None:
@@ -34,10 +38,12 @@ def main() -> None:
             first = time.perf_counter() - started
             rows = measured(editor, name, options.rounds)
             memory = peak_memory(editor.process.pid)
-    print(f"{packages} packages; start to first diagnostics {first * 1e3:.0f} ms; {memory:.0f} MB at most")
-    print(f"{'request':32}{'median [ms]':>14}{'95 % [ms]':>14}")
+    print(f"{packages} packages, {memory:.0f} MB at most (asked: 150).\n")
+    print("| what | median [ms] | 95 % [ms] | asked [ms] |\n|---|---:|---:|---:|")
+    print(f"| start to first diagnostics | {first * 1e3:.0f} | | 700 |")
     for row, times in rows.items():
-        print(f"{row:32}{statistics.median(times):14.1f}{sorted(times)[int(len(times) * 0.95)]:14.1f}")
+        nearly_all = sorted(times)[int(len(times) * 0.95)]
+        print(f"| {row} | {statistics.median(times):.1f} | {nearly_all:.1f} | {ASKED.get(row, '')} |")
 
 
 def workspace(folder: Path, copies: int) -> int:
