@@ -59,12 +59,14 @@ class Workspace:
     )
     _registry: Registry | None = None
     _broken: frozenset[str] = frozenset()
+    _found: dict[Path, list[Diagnostic]] = field(default_factory=dict[Path, list[Diagnostic]])
+    _uses: dict[str, list[Use]] | None = None
 
     def open(self, path: Path, text: str) -> None:
         """Take a text in the place of a file."""
         is_new = path not in self.buffers.texts and not path.exists()
         self.buffers.texts[path] = text.replace("\r\n", "\n")
-        self._registry = None
+        self._forget()
         if is_new or not _is_definition(path):
             self._state = None
 
@@ -75,7 +77,8 @@ class Workspace:
 
     def files_changed(self) -> None:
         """Look again for packages: files came, went, or changed on disk."""
-        self._state = self._registry = None
+        self._state = None
+        self._forget()
 
     def source(self, path: Path) -> Source | None:
         """The text of a file, with plain line ends; None if it cannot be read."""
@@ -110,7 +113,10 @@ class Workspace:
             except InputError as error:
                 return list(error.diagnostics)
             package = self.package_of(path)
-            return self._findings([package] if package else []) + state.problems
+            place = package.root if package is not None else path
+            if place not in self._found:  # a client may ask for what it has been told already
+                self._found[place] = self._findings([package] if package else [])
+            return self._found[place] + state.problems
 
     def all_findings(self) -> list[Diagnostic]:
         """The diagnostics about all packages."""
@@ -175,7 +181,12 @@ class Workspace:
 
     def uses(self, type_name: str) -> list[Use]:
         """The fields and endpoints that have a type."""
-        return [use for use in self.all_uses() if use.type_name == type_name]
+        if self._uses is None:
+            uses: dict[str, list[Use]] = {}
+            for use in self.all_uses():
+                uses.setdefault(use.type_name, []).append(use)
+            self._uses = uses
+        return self._uses.get(type_name, [])
 
     def all_uses(self) -> Iterator[Use]:
         """Every place that names a type: fields first, then node descriptions."""
@@ -192,6 +203,11 @@ class Workspace:
                 source = self.source(node.path.absolute())
                 if source is not None:
                     yield from uses_in_document(source, self.search())
+
+    def _forget(self) -> None:
+        """Forget what followed from the texts."""
+        self._registry = self._uses = None
+        self._found = {}
 
     def _known(self) -> _State:
         if self._state is None:
