@@ -24,8 +24,6 @@ from ifgen.language_server.workspace import Workspace
 
 RULES_PAGE: Final = "https://github.com/ifgen-ros/ifgen/blob/main/docs/rules.md"
 _SEVERITIES: Final = {"error": lsp.DiagnosticSeverity.Error, "warning": lsp.DiagnosticSeverity.Warning}
-_UNNECESSARY: Final = frozenset(("unused-ignore", "unused-dependency"))
-_DEPRECATED: Final = frozenset(("old-type", "deprecated-type"))
 _WATCHED: Final = ("**/*.{msg,srv,action,idl}", "**/*.nodl.{yaml,yml,json}", "**/package.xml")
 _WATCHED_NAMES: Final = ("**/CMakeLists.txt", "**/pyproject.toml")
 
@@ -104,11 +102,7 @@ class Server(LanguageServer):
             lsp.DiagnosticRelatedInformation(self.location(each.span), each.text or "see here")
             for each in finding.secondary
         ]
-        tags: list[lsp.DiagnosticTag] = []
-        if finding.rule in _UNNECESSARY:
-            tags.append(lsp.DiagnosticTag.Unnecessary)
-        if finding.rule in _DEPRECATED:
-            tags.append(lsp.DiagnosticTag.Deprecated)
+        tags = [lsp.DiagnosticTag.Unnecessary] if finding.rule == "unused-ignore" else None
         return lsp.Diagnostic(
             range=self.location(finding.primary.span).range,
             message=f"{finding.message}{label}{help}",
@@ -116,7 +110,7 @@ class Server(LanguageServer):
             code=finding.rule,
             code_description=lsp.CodeDescription(f"{RULES_PAGE}#{finding.rule}"),
             source="ifgen",
-            tags=tags or None,
+            tags=tags,
             related_information=related or None,
         )
 

@@ -9,10 +9,10 @@ from typing import Any, Final, Literal, TypeAlias
 from ifgen.diagnostics import Diagnostic
 
 from ifgen_tools.beside import session_beside
-from ifgen_tools.ros_graph import View
 from ifgen_tools.system.manifest import Manifest
-from ifgen_tools.system.model import Endpoint, NodeInstance, System
+from ifgen_tools.system.model import NodeInstance, System
 from ifgen_tools.system.rules import check
+from ifgen_tools.system.running import of_graph
 from ifgen_tools.verbs import TransportChoice
 
 Outcome: TypeAlias = Literal["accepted", "rejected", "unclear"]
@@ -72,37 +72,7 @@ def described(manifest: Manifest) -> System:
 def running(transport: TransportChoice) -> System:
     """The system that runs now. Raises UsageError if there is no such transport."""
     with session_beside([], transport) as session:
-        return of_view(session.graph())
-
-
-def of_view(view: View) -> System:
-    """A graph that was seen, without what every node has."""
-    shown = view.of_authors()
-    return System(
-        tuple(
-            NodeInstance(
-                name,
-                "",
-                "",
-                kind="running",
-                endpoints=tuple(
-                    Endpoint(
-                        node=name,
-                        category=end.category,
-                        written=end.name,
-                        expanded=end.name,
-                        name=end.name,
-                        type_name=end.type_name,
-                        type_hash=end.type_hash or "",
-                        qos=end.qos,
-                    )
-                    for end in shown.endpoints
-                    if end.node == name
-                ),
-            )
-            for name in shown.nodes
-        )
-    )
+        return of_graph(session.graph())
 
 
 def judge(candidate: Manifest, system: System, *, complete: bool = False) -> Verdict:
