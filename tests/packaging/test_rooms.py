@@ -54,6 +54,7 @@ SMALL = {
     "ifgen.reading.python_text": "places in Python, beside those in the other kinds of files that are read",
     "ifgen_generators.rust.testee": "code for tests, which users do not get",
     "ifgen_runtime.importing": "messages load it, and must stay light",
+    "ifgen_tools.system.running": "`ifgen doctor` finds it by the group `ifgen.system`",
 }
 """Modules of fewer than 60 lines that one other imports, and why they stand by themselves."""
 
